@@ -1,0 +1,169 @@
+"""Reading a project with everything that it names, in Nau's load order (nau-format.md, 3.1)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from nau_py.formats.bind import Binder
+from nau_py.formats.paths import resolve
+from nau_py.formats.settings import parse_setting
+from nau_py.formats.tolerant import XmlSyntaxError
+from nau_py.formats.upgrade import upgrade
+from nau_py.formats.xml import parse_xml
+from nau_py.formats.yaml import YamlReader, load_yaml
+from nau_py.model.attribute import Attribute
+from nau_py.model.attributes import Registry
+from nau_py.model.element import Element
+from nau_py.model.library import MaterialLibrary
+from nau_py.model.linked import Project
+from nau_py.model.location import Location
+from nau_py.model.node import Node
+from nau_py.model.problem import Problem, ProblemKind
+from nau_py.model.project import ProjectFile
+from nau_py.model.values import DataType
+
+BUILTIN_LIBRARY = Path(__file__).parent / "builtin" / "system.mlib"
+YAML_SUFFIXES = (".yaml", ".yml")
+LIBRARY_ROOTS = ("materialLib", "materiallib")
+_DEFAULT_KEYS = ("value", "x", "y", "z", "w", "r", "g", "b", "a")
+
+
+class Reader:
+    """Reads files into models, collecting problems and the text of each file."""
+
+    def __init__(self) -> None:
+        self.registry = Registry()
+        self.problems: list[Problem] = []
+        self.sources: dict[str, str] = {}
+
+    def read_text(self, path: Path) -> str | None:
+        """The text of a file (UTF-8, else Latin-1), or None with a problem."""
+        try:
+            raw = path.read_bytes()
+        except OSError as error:
+            detail = error.strerror or str(error)
+            self.problems.append(
+                Problem(ProblemKind.UNREADABLE, Location(str(path)), value=str(path), detail=detail)
+            )
+            return None
+        try:
+            text = raw.decode("utf-8")
+        except UnicodeDecodeError:
+            text = raw.decode("latin-1")
+        self.sources[str(path)] = text
+        return text
+
+    def element(self, path: Path, tag: str, cls: type[Node]) -> Element | None:
+        """The element tree of a file, upgraded; None with a problem where it has no reading."""
+        text = self.read_text(path)
+        if text is None:
+            return None
+        try:
+            if path.suffix.lower() in YAML_SUFFIXES:
+                data = load_yaml(text, str(path))
+                self._yaml_user_attributes(data)
+                where = Location(str(path), 1, 1)
+                root = YamlReader(str(path), self.registry).node(tag, data, cls, where)
+            else:
+                root = parse_xml(text, str(path), self.problems)
+        except XmlSyntaxError as error:
+            self.problems.append(
+                Problem(ProblemKind.SYNTAX, error.location, detail=error.message)
+            )
+            return None
+        except RecursionError:
+            where = Location(str(path), 1, 1)
+            self.problems.append(
+                Problem(ProblemKind.SYNTAX, where, detail="elements are nested too deeply")
+            )
+            return None
+        return upgrade(root, self.problems)
+
+    def _yaml_user_attributes(self, data: object) -> None:
+        """User attributes come first: they decide which keys of the rest are settings."""
+        assets = data.get("assets") if isinstance(data, dict) else None
+        listed = assets.get("attributes") if isinstance(assets, dict) else None
+        for item in listed if isinstance(listed, list) else []:
+            if isinstance(item, dict):
+                texts = {str(k): str(v) for k, v in item.items()}
+                self.declare(Element("attribute", texts))
+
+    def declare(self, element: Element) -> None:
+        """Add the user attribute that an ``<attribute>`` element declares, if it is whole."""
+        type_, name = element.attributes.get("type", ""), element.attributes.get("name", "")
+        set_ = self.registry.get(type_)
+        data = element.attributes.get("data", "")
+        if set_ is None or not name or name in set_ or data not in DataType.__members__:
+            return
+        data_type = DataType(data)
+        keys = "rgba" if "r" in element.attributes else "xyzw"
+        plain = Attribute(name, data_type, keys=keys)
+        values = {k: v for k, v in element.attributes.items() if k in _DEFAULT_KEYS}
+        default = parse_setting(Element(name, values), plain, []) if values else None
+        parts = default.parts if default else (0,) * data_type.components
+        parts += (0,) * (data_type.components - len(parts))
+        self.registry.add(
+            type_, Attribute(name, data_type, parts, "User attribute of the project.", keys=keys)
+        )
+
+    def declare_all(self, root: Element) -> None:
+        assets = root.first("assets")
+        section = assets.first("attributes") if assets else None
+        for child in section.children if section else []:
+            if child.tag == "attribute":
+                self.declare(child)
+
+    def library(self, path: Path) -> MaterialLibrary | None:
+        root = self.element(path, "materialLib", MaterialLibrary)
+        if root is None:
+            return None
+        return Binder(self.registry, self.problems).bind(root, MaterialLibrary)
+
+
+def load_project(path: Path | str) -> Project:
+    """Read a project file (XML or YAML) with its material libraries.
+
+    Never raises for what a file says: problems are collected in ``Project.problems`` and become
+    diagnostics in :mod:`nau_py.lint`.
+    """
+    path = Path(path)
+    reader = Reader()
+    root = reader.element(path, "project", ProjectFile)
+    project = Project(path, ProjectFile(location=Location(str(path), 1, 1)), reader.registry)
+    project.problems, project.sources = reader.problems, reader.sources
+    builtin = reader.library(BUILTIN_LIBRARY)
+    if builtin is not None:
+        project.libraries.append(builtin)
+    if root is None:
+        return project
+    reader.declare_all(root)
+    project.file = Binder(reader.registry, reader.problems).bind(root, ProjectFile)
+    for reference in project.assets.materialLibs:
+        found = resolve(path.parent, reference.filename or "")
+        if reference.filename and found.exists:
+            library = reader.library(found.best)
+            if library is not None:
+                project.libraries.append(library)
+    return project
+
+
+def load_library(path: Path | str) -> Project:
+    """Read one material library as a project of its own, for lint and formatting."""
+    path = Path(path)
+    reader = Reader()
+    project = Project(path, ProjectFile(location=Location(str(path), 1, 1)), reader.registry)
+    project.problems, project.sources = reader.problems, reader.sources
+    for file in (BUILTIN_LIBRARY, path):
+        library = reader.library(file)
+        if library is not None:
+            project.libraries.append(library)
+    return project
+
+
+def is_library(path: Path) -> bool:
+    """Whether a file is a material library: by its ending, or by the root of a YAML file."""
+    if path.suffix.lower() in YAML_SUFFIXES:
+        return path.name.lower().endswith(tuple(f".mlib{s}" for s in YAML_SUFFIXES))
+    return path.suffix.lower() == ".mlib"
+
+

@@ -1,0 +1,65 @@
+"""Paths as projects write them: backslashes and the wrong letter case (nau-format.md, 1.5)."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+
+@dataclass(frozen=True, slots=True)
+class Resolved:
+    """A path of a project: where it leads, and whether something is there.
+
+    ``on_disk`` differs from ``path`` where only the letter case of the written path was wrong.
+    """
+
+    path: Path
+    on_disk: Path | None
+
+    @property
+    def exists(self) -> bool:
+        return self.on_disk is not None
+
+    @property
+    def wrong_case(self) -> bool:
+        return self.on_disk is not None and self.on_disk != self.path
+
+    @property
+    def best(self) -> Path:
+        return self.on_disk or self.path
+
+
+@lru_cache(maxsize=4096)
+def _entries(folder: str) -> dict[str, str]:
+    try:
+        return {name.lower(): name for name in sorted(os.listdir(folder))}
+    except OSError:
+        return {}
+
+
+def resolve(folder: Path, text: str) -> Resolved:
+    """Where ``text``, written in a file of ``folder``, leads."""
+    path = Path(os.path.normpath(folder / text.strip().replace("\\", "/")))
+    if path.exists():
+        return Resolved(path, path)
+    here = Path(path.anchor or ".")
+    for part in path.parts[1:] if path.anchor else path.parts:
+        step = here / part
+        if not step.exists():
+            found = _entries(str(here)).get(part.lower())
+            if found is None:
+                return Resolved(path, None)
+            step = here / found
+        here = step
+    return Resolved(path, here)
+
+
+def similar(resolved: Resolved) -> list[str]:
+    """Names in the folder of a missing file that differ from it little."""
+    from difflib import get_close_matches
+
+    folder = resolved.path.parent
+    names = list(_entries(str(folder)).values())
+    return get_close_matches(resolved.path.name, names, n=3, cutoff=0.6)

@@ -1,0 +1,92 @@
+"""Attribute sets: the properties that an object type has, as data (nau-format.md, section 9).
+
+They decide which child tags a file may write, which ``component`` a ``valueof`` may name, what an
+unset value is, and what the reference page says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+
+from nau_py.model.values import DataType, Scalar
+
+
+@dataclass(frozen=True, slots=True)
+class Attribute:
+    """One property: its type, default, legal values and one line of documentation."""
+
+    name: str
+    type: DataType
+    default: tuple[Scalar, ...] = ()
+    doc: str = ""
+    readonly: bool = False
+    values: tuple[str, ...] = ()
+    minimum: float | None = None
+    maximum: float | None = None
+    keys: str = "xyzw"
+    """The component names to write: ``xyzw``, ``rgba`` or ``size`` (width, height)."""
+    reference: str = ""
+    """For a STRING: what it names (``camera``, ``viewport``)."""
+
+
+@dataclass(slots=True)
+class AttributeSet:
+    """The attributes of one object type, in the order in which they are documented."""
+
+    type: str
+    attributes: dict[str, Attribute] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, type_: str, attributes: Iterable[Attribute]) -> AttributeSet:
+        return cls(type_, {attribute.name: attribute for attribute in attributes})
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.attributes
+
+    def __iter__(self) -> Iterator[Attribute]:
+        return iter(self.attributes.values())
+
+    def get(self, name: str) -> Attribute | None:
+        return self.attributes.get(name)
+
+    def default(self, name: str) -> tuple[Scalar, ...]:
+        return self.attributes[name].default
+
+    @property
+    def writable(self) -> list[str]:
+        return [a.name for a in self if not a.readonly and a.type.in_file]
+
+    def copy(self) -> AttributeSet:
+        return AttributeSet(self.type, dict(self.attributes))
+
+
+def number(name: str, type_: DataType, default: float, doc: str = "", **rest: object) -> Attribute:
+    return Attribute(name, type_, (default,), doc, **rest)  # type: ignore[arg-type]
+
+
+def flag(name: str, default: bool, doc: str = "", readonly: bool = False) -> Attribute:
+    return Attribute(name, DataType.BOOL, (default,), doc, readonly)
+
+
+def choice(name: str, default: str, values: str, doc: str = "", readonly: bool = False) -> Attribute:
+    return Attribute(name, DataType.ENUM, (default,), doc, readonly, tuple(values.split()))
+
+
+def vector(
+    name: str, default: tuple[float, ...], doc: str = "", readonly: bool = False
+) -> Attribute:
+    return Attribute(name, DataType(f"VEC{len(default)}"), default, doc, readonly)
+
+
+def colour(
+    name: str, default: tuple[float, float, float, float], doc: str = "", unit_range: bool = True
+) -> Attribute:
+    limits = (0.0, 1.0) if unit_range else (None, None)
+    return Attribute(
+        name, DataType.VEC4, default, doc, minimum=limits[0], maximum=limits[1], keys="rgba"
+    )
+
+
+def matrix(name: str, doc: str = "", size: int = 4) -> Attribute:
+    return Attribute(name, DataType(f"MAT{size}"), (), doc, readonly=True)

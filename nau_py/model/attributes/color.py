@@ -1,0 +1,17 @@
+"""COLOR attributes, the colours of a material (nau-format.md, 9.4)."""
+
+from __future__ import annotations
+
+from nau_py.model.attribute import AttributeSet, colour, number
+from nau_py.model.values import DataType
+
+COLOR = AttributeSet.of(
+    "COLOR",
+    [
+        colour("AMBIENT", (0.2, 0.2, 0.2, 1.0), "Ambient colour.", unit_range=False),
+        colour("DIFFUSE", (0.8, 0.8, 0.8, 1.0), "Diffuse colour.", unit_range=False),
+        colour("SPECULAR", (0.0, 0.0, 0.0, 1.0), "Specular colour.", unit_range=False),
+        colour("EMISSION", (0.0, 0.0, 0.0, 1.0), "Emitted colour.", unit_range=False),
+        number("SHININESS", DataType.FLOAT, 0.0, "Phong exponent."),
+    ],
+)

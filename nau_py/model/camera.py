@@ -1,0 +1,26 @@
+"""Cameras (nau-format.md, 3.7)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from nau_py.model.node import Attr, Child, Configured, Inline, Settings
+from nau_py.model.scene import NodeSettings
+
+
+class Projection(Configured):
+    """Projection parameters as XML attributes: TYPE FOV NEAR FAR LEFT RIGHT TOP BOTTOM."""
+
+    settings: Annotated[NodeSettings, Inline("CAMERA")] = Field(default_factory=dict)
+
+
+class Camera(Configured):
+    """A camera. Its tags are applied in the order in which they are written."""
+
+    name: Annotated[str | None, Attr(doc="Camera name.", required=True)] = None
+    projection: Annotated[
+        Projection | None, Child(Projection, doc="Applied after the other tags.")
+    ] = None
+    settings: Annotated[NodeSettings, Settings("CAMERA")] = Field(default_factory=dict)

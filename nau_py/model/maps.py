@@ -1,0 +1,136 @@
+"""Material maps and injection maps of a pass (nau-format.md, 4.6 and 4.7)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from nau_py.model.node import Attr, Child, Configured, Items, Node, Settings
+from nau_py.model.scene import NodeSettings
+from nau_py.model.values import DataType
+
+
+class MaterialMap(Node):
+    """Draw what has material ``fromMaterial`` with another one."""
+
+    fromMaterial: Annotated[  # noqa: N815
+        str | None, Attr(doc="Name, or prefix and a final `*`.", required=True)
+    ] = None
+    toLibrary: Annotated[  # noqa: N815
+        str | None, Attr(doc="Library; default the default library.", ref="library")
+    ] = None
+    toMaterial: Annotated[  # noqa: N815
+        str | None,
+        Attr(doc="Material to draw with.", required=True, ref="material", library="toLibrary"),
+    ] = None
+
+
+_FROM_LIBRARY = Attr(doc="Library.", required=True, ref="library")
+
+
+class InjectedState(Node):
+    """A state to inject."""
+
+    name: Annotated[
+        str | None, Attr(doc="State.", required=True, ref="state", library="fromLibrary")
+    ] = None
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
+
+
+class InjectedShader(Node):
+    """A shader with its uniform sources, taken from a material."""
+
+    fromMaterial: Annotated[  # noqa: N815
+        str | None, Attr(doc="Material.", required=True, ref="material", library="fromLibrary")
+    ] = None
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
+
+
+class InjectedColor(Node):
+    """Colours taken from a material: the flagged ones, or all without a flag."""
+
+    fromMaterial: Annotated[  # noqa: N815
+        str | None, Attr(doc="Material.", required=True, ref="material", library="fromLibrary")
+    ] = None
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
+    ambient: Annotated[str | None, Attr(doc="`true` copies it.")] = None
+    diffuse: Annotated[str | None, Attr(doc="`true` copies it.")] = None
+    specular: Annotated[str | None, Attr(doc="`true` copies it.")] = None
+    emission: Annotated[str | None, Attr(doc="`true` copies it.")] = None
+    shininess: Annotated[str | None, Attr(doc="`true` copies it.")] = None
+
+
+class InjectedTexture(Configured):
+    """A texture to inject on a unit."""
+
+    name: Annotated[
+        str | None, Attr(doc="Texture.", required=True, ref="texture", library="fromLibrary")
+    ] = None
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
+    toUnit: Annotated[int | None, Attr(DataType.INT, "Unit.", required=True)] = None  # noqa: N815
+    settings: Annotated[NodeSettings, Settings("TEXTURE_SAMPLER")] = Field(default_factory=dict)
+
+
+class InjectedImage(Configured):
+    """An image texture to inject on a unit."""
+
+    texture: Annotated[
+        str | None, Attr(doc="Texture.", required=True, ref="texture", library="fromLibrary")
+    ] = None
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
+    toUnit: Annotated[int | None, Attr(DataType.INT, "Unit.", required=True)] = None  # noqa: N815
+    settings: Annotated[NodeSettings, Settings("IMAGE_TEXTURE")] = Field(default_factory=dict)
+
+
+class InjectedBuffer(Configured):
+    """A buffer to inject on a binding point."""
+
+    name: Annotated[
+        str | None, Attr(doc="Buffer.", required=True, ref="buffer", library="fromLibrary")
+    ] = None
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
+    settings: Annotated[NodeSettings, Settings("BUFFER_BINDING")] = Field(default_factory=dict)
+
+
+class InjectedImageArray(Configured):
+    """An array of image textures to inject."""
+
+    textureArray: Annotated[  # noqa: N815
+        str | None, Attr(doc="`lib::array`.", required=True, ref="texture array")
+    ] = None
+    FIRST_UNIT: Annotated[int | None, Attr(DataType.INT, "First unit.", required=True)] = None
+    settings: Annotated[NodeSettings, Settings("ARRAY_OF_IMAGE_TEXTURES")] = Field(
+        default_factory=dict
+    )
+
+
+class InjectionMap(Node):
+    """Change parts of every material that matches ``toMaterial``, for this pass."""
+
+    toMaterial: Annotated[  # noqa: N815
+        str | None, Attr(doc="Name, or prefix and a final `*`.", required=True)
+    ] = None
+    state: Annotated[InjectedState | None, Child(InjectedState)] = None
+    shader: Annotated[InjectedShader | None, Child(InjectedShader)] = None
+    color: Annotated[InjectedColor | None, Child(InjectedColor)] = None
+    textures: Annotated[
+        list[InjectedTexture], Items(InjectedTexture, "texture", "textures")
+    ] = Field(default_factory=list)
+    imageTextures: Annotated[  # noqa: N815
+        list[InjectedImage], Items(InjectedImage, "imageTexture", "imageTextures")
+    ] = Field(default_factory=list)
+    buffers: Annotated[list[InjectedBuffer], Items(InjectedBuffer, "buffer", "buffers")] = Field(
+        default_factory=list
+    )
+    arraysOfImageTexture: Annotated[  # noqa: N815
+        list[InjectedImageArray],
+        Items(InjectedImageArray, "arrayOfImageTexture", "arraysOfImageTexture"),
+    ] = Field(default_factory=list)
+
+
+def matches(pattern: str, name: str) -> bool:
+    """Nau's pattern: an exact name, or a prefix followed by a final ``*``."""
+    if pattern.endswith("*"):
+        return name.startswith(pattern[:-1])
+    return name == pattern

@@ -1,0 +1,169 @@
+"""The raytrace pass: ray types, programs and parameters (nau-format.md, section 7).
+
+Element names are those of Nau's class ``rt``; the ``optix*`` spelling is upgraded to them.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from nau_py.model.node import Attr, Child, Items, Node
+from nau_py.model.passes import Pass
+from nau_py.model.values import DataType
+
+PROGRAM_KINDS = ("CLOSEST_HIT", "ANY_HIT", "MISS")
+BUILTIN = "builtin"
+VERTEX_ATTRIBUTES = (
+    "position normal color texCoord0 texCoord1 texCoord2 texCoord3 tangent bitangent triangleID "
+    "custom0 custom1 custom2 custom3 custom4 custom5"
+).split()
+
+
+class Program(Node):
+    """A program: a procedure of a file. The file ``builtin`` is nau_py's own."""
+
+    file: Annotated[
+        str | None, Attr(doc="`builtin`, or a path.", required=True, file="program")
+    ] = None
+    proc: Annotated[str | None, Attr(doc="Procedure.", required=True)] = None
+
+
+class RayProgram(Program):
+    """A program of a ray type."""
+
+    type: Annotated[str | None, Attr(doc="Kind.", required=True, values=PROGRAM_KINDS)] = None
+
+
+class GeometryProgram(Program):
+    """An intersection or bounds program: triangles are intersected by Embree instead."""
+
+    type: Annotated[
+        str | None, Attr(doc="Kind.", values=("Geometry_Intersection", "Bounding_Box"))
+    ] = None
+
+
+class RayTypePrograms(Node):
+    """The programs of one ray type."""
+
+    name: Annotated[str | None, Attr(doc="Ray type.", required=True)] = None
+    programs: Annotated[list[RayProgram], Items(RayProgram, "rtProgram")] = Field(
+        default_factory=list
+    )
+
+
+class RayMaterial(Node):
+    """Programs of a material, by ray type."""
+
+    to: Annotated[str | None, Attr(doc="Material, or prefix and a final `*`.")] = None
+    rayTypes: Annotated[  # noqa: N815
+        list[RayTypePrograms], Items(RayTypePrograms, "rayType")
+    ] = Field(default_factory=list)
+
+
+class EntryPoint(Node):
+    """Where a launch begins, and what runs when it fails."""
+
+    rayGen: Annotated[Program | None, Child(Program, doc="Ray generation.")] = None  # noqa: N815
+    exception: Annotated[Program | None, Child(Program, doc="Exception program.")] = None
+
+
+class RayType(Node):
+    """A ray type; its index is the order of first occurrence."""
+
+    name: Annotated[str | None, Attr(doc="Ray type.", required=True)] = None
+
+
+class VertexAttribute(Node):
+    """A vertex attribute that programs read."""
+
+    name: Annotated[
+        str | None, Attr(doc="Vertex attribute.", required=True, values=tuple(VERTEX_ATTRIBUTES))
+    ] = None
+
+
+class RayVariable(Node):
+    """A value handed to programs under a name."""
+
+    name: Annotated[str | None, Attr(doc="Name in the programs.", required=True)] = None
+    type: Annotated[
+        str | None, Attr(doc="Object type.", required=True, ref="object type")
+    ] = None
+    context: Annotated[str | None, Attr(doc="Object name, or CURRENT.", required=True)] = None
+    component: Annotated[str | None, Attr(doc="Attribute of the type.", required=True)] = None
+    id: Annotated[int | None, Attr(DataType.INT, "Unit, binding point or light index.")] = None
+
+
+class InputBuffer(Node):
+    """A texture that programs read, by pixel."""
+
+    var: Annotated[str | None, Attr(doc="Name in the programs.", required=True)] = None
+    texture: Annotated[
+        str | None, Attr(doc="Texture, `lib::name`.", required=True, ref="texture")
+    ] = None
+    mask: Annotated[
+        str | None,
+        Attr(doc="This input selects pixels, by this component.", values=("x", "y", "z", "w")),
+    ] = None
+
+
+class OutputBuffer(Node):
+    """A texture that programs write, by pixel."""
+
+    var: Annotated[str | None, Attr(doc="Name in the programs.", required=True)] = None
+    texture: Annotated[
+        str | None, Attr(doc="Texture, `lib::name`.", required=True, ref="texture")
+    ] = None
+
+
+class RaytracePass(Pass):
+    """Traces rays and writes what they bring to its render target."""
+
+    rtRayTypes: Annotated[  # noqa: N815
+        list[RayType], Items(RayType, "rayType", "rtRayTypes")
+    ] = Field(default_factory=list)
+    rtVertexAttributes: Annotated[  # noqa: N815
+        list[VertexAttribute], Items(VertexAttribute, "attribute", "rtVertexAttributes")
+    ] = Field(default_factory=list)
+    rtEntryPoint: Annotated[EntryPoint | None, Child(EntryPoint)] = None  # noqa: N815
+    rtDefaultMaterial: Annotated[  # noqa: N815
+        RayMaterial | None, Child(RayMaterial)
+    ] = None
+    rtMaterialMap: Annotated[  # noqa: N815
+        list[RayMaterial], Items(RayMaterial, "rtMap", "rtMaterialMap")
+    ] = Field(default_factory=list)
+    rtGlobalParams: Annotated[  # noqa: N815
+        list[RayVariable], Items(RayVariable, "param", "rtGlobalParams")
+    ] = Field(default_factory=list)
+    rtMaterialParams: Annotated[  # noqa: N815
+        list[RayVariable], Items(RayVariable, "param", "rtMaterialParams")
+    ] = Field(default_factory=list)
+    rtInput: Annotated[  # noqa: N815
+        list[InputBuffer], Items(InputBuffer, "buffer", "rtInput")
+    ] = Field(default_factory=list)
+    rtOutput: Annotated[  # noqa: N815
+        list[OutputBuffer], Items(OutputBuffer, "buffer", "rtOutput")
+    ] = Field(default_factory=list)
+    rtGeometryProgram: Annotated[  # noqa: N815
+        list[GeometryProgram], Items(GeometryProgram, "rtProgram", "rtGeometryProgram")
+    ] = Field(default_factory=list)
+
+    @property
+    def mask(self) -> InputBuffer | None:
+        """The input that selects pixels: the one with ``mask``, or the variable ``mask``."""
+        flagged = [i for i in self.rtInput if i.mask]
+        named = [i for i in self.rtInput if i.var == "mask"]
+        return next(iter(flagged + named), None)
+
+    @property
+    def materials(self) -> list[RayMaterial]:
+        """The default entry first, then the mapped ones."""
+        default = [self.rtDefaultMaterial] if self.rtDefaultMaterial else []
+        return default + self.rtMaterialMap
+
+    @property
+    def ray_types(self) -> list[str]:
+        """Ray type names by index: the declared ones, then those of the programs."""
+        used = [t.name for m in self.materials for t in m.rayTypes]
+        return list(dict.fromkeys(n for n in [*(t.name for t in self.rtRayTypes), *used] if n))

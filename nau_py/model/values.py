@@ -1,0 +1,153 @@
+"""Nau's data types and the way its loader turns text into values (nau-format.md, 1.3 and 2)."""
+
+from __future__ import annotations
+
+import re
+from enum import StrEnum
+
+Scalar = bool | int | float | str
+
+
+class DataType(StrEnum):
+    """The data types that a project file can write (nau-format.md, section 2)."""
+
+    INT = "INT"
+    IVEC2 = "IVEC2"
+    IVEC3 = "IVEC3"
+    IVEC4 = "IVEC4"
+    UINT = "UINT"
+    UIVEC2 = "UIVEC2"
+    UIVEC3 = "UIVEC3"
+    UIVEC4 = "UIVEC4"
+    BOOL = "BOOL"
+    BVEC4 = "BVEC4"
+    FLOAT = "FLOAT"
+    VEC2 = "VEC2"
+    VEC3 = "VEC3"
+    VEC4 = "VEC4"
+    DOUBLE = "DOUBLE"
+    DVEC2 = "DVEC2"
+    DVEC3 = "DVEC3"
+    DVEC4 = "DVEC4"
+    ENUM = "ENUM"
+    STRING = "STRING"
+    MAT3 = "MAT3"
+    MAT4 = "MAT4"
+    INTARRAY = "INTARRAY"
+
+    @property
+    def components(self) -> int:
+        """How many scalars one value holds."""
+        if self in (DataType.MAT3, DataType.MAT4):
+            return int(self.value[-1]) ** 2
+        return int(self.value[-1]) if self.value[-1].isdigit() else 1
+
+    @property
+    def required_components(self) -> int:
+        """A VEC4 may leave out its last component, which is then 0."""
+        return 3 if self is DataType.VEC4 else self.components
+
+    @property
+    def is_integer(self) -> bool:
+        return self.value.startswith(("INT", "IVEC", "UINT", "UIVEC"))
+
+    @property
+    def is_unsigned(self) -> bool:
+        return self.value.startswith("UI")
+
+    @property
+    def is_boolean(self) -> bool:
+        return self.value.startswith(("BOOL", "BVEC"))
+
+    @property
+    def is_number(self) -> bool:
+        return self.is_integer or self.value.startswith(("FLOAT", "VEC", "DOUBLE", "DVEC"))
+
+    @property
+    def in_file(self) -> bool:
+        """Whether a project file can write a value of this type."""
+        return self not in (DataType.MAT3, DataType.MAT4, DataType.INTARRAY)
+
+
+STRUCTURE_TYPES = (
+    "INT IVEC2 IVEC3 IVEC4 UINT UIVEC2 UIVEC3 UIVEC4 BOOL BVEC2 BVEC3 BVEC4 FLOAT VEC2 VEC3 VEC4 "
+    "DOUBLE DVEC2 DVEC3 DVEC4 MAT2 MAT3 MAT4 MAT2x3 MAT2x4 MAT3x2 MAT3x4 MAT4x2 MAT4x3 DMAT2 DMAT3 "
+    "DMAT4 DMAT2x3 DMAT2x4 DMAT3x2 DMAT3x4 DMAT4x2 DMAT4x3 BYTE UBYTE SHORT USHORT"
+).split()
+"""Names that ``<structure><field value=/>`` of a buffer accepts."""
+
+_INTEGER = re.compile(r"\s*([+-]?\d+)")
+_FLOAT = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)")
+_NAME = re.compile(r"[A-Za-z_][\w.\- ]*$")
+
+
+class Unconvertible(ValueError):
+    """The text has no value of the wanted type, not even by Nau's prefix rules."""
+
+
+def to_int(text: str) -> int:
+    """``sscanf("%d")``: the longest integer prefix. Raises :class:`Unconvertible` without one."""
+    match = _INTEGER.match(text)
+    if match is None:
+        raise Unconvertible(text)
+    return int(match[1])
+
+
+def to_float(text: str) -> float:
+    """``sscanf("%lf")``: the longest decimal prefix. Raises :class:`Unconvertible` without one."""
+    match = _FLOAT.match(text)
+    if match is None:
+        raise Unconvertible(text)
+    return float(match[1])
+
+
+def to_bool(text: str) -> bool:
+    """Nau's case-insensitive prefix test. Raises :class:`Unconvertible` for other text."""
+    lower = text.lower()
+    if lower.startswith(("true", "yes", "1")):
+        return True
+    if lower.startswith(("false", "no", "0")):
+        return False
+    raise Unconvertible(text)
+
+
+def to_scalar(text: str, data_type: DataType) -> Scalar:
+    """One component of ``data_type``.
+
+    A number that does not parse but could be the name of a constant is returned as that name
+    (``str``); it is resolved where the project's constants are known.
+    """
+    if data_type in (DataType.ENUM, DataType.STRING):
+        return text
+    if data_type.is_boolean:
+        return to_bool(text)
+    try:
+        return to_int(text) if data_type.is_integer else to_float(text)
+    except Unconvertible:
+        if _NAME.match(text):
+            return text
+        raise
+
+
+def has_trailing_text(text: str, data_type: DataType) -> bool:
+    """Whether Nau would use only the beginning of ``text`` (``"256,"``, ``"102.55.0"``)."""
+    if not data_type.is_number:
+        return False
+    pattern = _INTEGER if data_type.is_integer else _FLOAT
+    match = pattern.match(text)
+    if match is None:
+        return False
+    rest = text[match.end() :].strip()
+    if data_type.is_integer:  # "1.0" for an int is a habit, not a slip
+        rest = re.sub(r"^\.0*$", "", rest)
+    return rest not in ("", "f", "F")
+
+
+def format_scalar(value: Scalar) -> str:
+    """The text that :func:`to_scalar` reads back as the same value."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, float):
+        text = repr(value)
+        return text[:-2] if text.endswith(".0") else text
+    return str(value)
