@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from nau_py.formats.bind import Binder
-from nau_py.formats.paths import resolve
+from nau_py.paths import resolve
 from nau_py.formats.settings import parse_setting
 from nau_py.formats.tolerant import XmlSyntaxError
 from nau_py.formats.upgrade import upgrade

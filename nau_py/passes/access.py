@@ -1,0 +1,125 @@
+"""What materials, targets and process items make a pass read and write."""
+
+from __future__ import annotations
+
+from nau_py.graph.contract import Access
+from nau_py.graph.resource import WINDOW, Resource
+from nau_py.model.library import DEFAULT_LIBRARY, qualified
+from nau_py.model.linked import Project
+from nau_py.model.maps import InjectionMap
+from nau_py.model.material import BufferUnit
+from nau_py.model.passes import Pass, ProcessBuffer, ProcessTexture, TargetReference
+
+
+def texture(name: str | None, library: str | None) -> Resource:
+    return Resource("texture", qualified(name or "", library or DEFAULT_LIBRARY))
+
+
+def buffer(name: str | None, library: str | None) -> Resource:
+    return Resource("buffer", qualified(name or "", library or DEFAULT_LIBRARY))
+
+
+def buffer_of(project: Project, unit: BufferUnit, library: str) -> Resource:
+    """The buffer that a material binds: its own library's first, else ``fromLibrary``'s."""
+    own = buffer(unit.name, library)
+    if unit.fromLibrary and own.name not in project.names("buffer"):
+        return buffer(unit.name, unit.fromLibrary)
+    return own
+
+
+def target_reference(project: Project, pass_: Pass) -> TargetReference | None:
+    """The render target of a pass, with ``sameas`` followed; None draws to the window."""
+    reference = pass_.renderTarget
+    seen: set[int] = set()
+    while reference is not None and reference.sameas and id(reference) not in seen:
+        seen.add(id(reference))
+        named = [
+            p
+            for pipeline in project.pipelines
+            for p in pipeline.passes
+            if p.name == reference.sameas and p is not pass_
+        ]
+        reference = named[-1].renderTarget if named else None
+    return reference
+
+
+def add_material(access: Access, project: Project, library: str, name: str) -> None:
+    """What drawing with a material reads and writes beside the target."""
+    found = project.material(library, name)
+    if found is None:
+        return
+    material = found[1]
+    for unit in material.textures:
+        access.add_read(texture(unit.name, library))
+    for image in material.imageTextures:
+        mode = str((image.get("ACCESS") or ("WRITE_ONLY",))[0])
+        resource = texture(image.texture, library)
+        if mode != "WRITE_ONLY":
+            access.add_read(resource)
+        if mode != "READ_ONLY":
+            access.add_write(resource)
+    for bound in material.buffers:
+        resource = buffer_of(project, bound, library)
+        access.add_read(resource)
+        if (bound.get("TYPE") or ("SHADER_STORAGE",))[0] != "UNIFORM":
+            access.add_write(resource)
+
+
+def _add_injection(access: Access, map_: InjectionMap) -> None:
+    for item in map_.textures:
+        access.add_read(texture(item.name, item.fromLibrary))
+    for image in map_.imageTextures:
+        resource = texture(image.texture, image.fromLibrary)
+        access.add_read(resource)
+        access.add_write(resource)
+    for bound in map_.buffers:
+        resource = buffer(bound.name, bound.fromLibrary)
+        access.add_read(resource)
+        access.add_write(resource)
+
+
+def add_maps(access: Access, project: Project, pass_: Pass) -> None:
+    """What the material and injection maps of a pass make it read and write."""
+    for injection in pass_.injectionMaps:
+        _add_injection(access, injection)
+    for map_ in pass_.materialMaps:
+        add_material(
+            access, project, map_.toLibrary or DEFAULT_LIBRARY, map_.toMaterial or ""
+        )
+
+
+def add_process(access: Access, pass_: Pass) -> None:
+    """What pre- and post-process items read and write."""
+    for item in [*pass_.preProcess, *pass_.postProcess]:
+        if isinstance(item, ProcessTexture):
+            resource = texture(item.name, item.fromLibrary)
+            access.add_read(resource)
+            access.add_write(resource)
+        elif isinstance(item, ProcessBuffer):
+            access.add_write(buffer(item.name, item.fromLibrary))
+
+
+def add_target(access: Access, project: Project, pass_: Pass, clears: bool) -> None:
+    """The textures that a pass draws into, or the window.
+
+    ``clears``: the class clears its target first, unless the pass says otherwise.
+    """
+    reference = target_reference(project, pass_)
+    if reference is None:
+        access.add_write(WINDOW)
+        return
+    library = reference.fromLibrary or ""
+    target = project.render_target(library, reference.name or "")
+    if target is None:
+        return
+    colour = clears and bool((pass_.get("COLOR_CLEAR") or (True,))[0])
+    depth = clears and bool((pass_.get("DEPTH_CLEAR") or (True,))[0])
+    whole = pass_.viewport is None and not pass_.viewports
+    for name in target.texture_names:
+        resource = texture(name, library)
+        cleared = depth if name == target.depth_name else colour
+        access.add_write(resource)
+        if cleared and whole:
+            access.replaces.append(resource)
+        elif clears and not cleared:
+            access.add_read(resource)

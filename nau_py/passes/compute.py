@@ -1,0 +1,70 @@
+"""Class ``compute``: runs a compute shader (nau-format.md, 4.4)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from nau_py.graph.contract import Access
+from nau_py.model.library import DEFAULT_LIBRARY
+from nau_py.model.linked import Project
+from nau_py.model.pass_classes import ComputePass
+from nau_py.model.passes import Pass
+from nau_py.passes.access import add_material, add_process, buffer
+from nau_py.passes.drawing import draw_context, identity, pass_value, process
+from nau_py.passes.frame import FrameContext, PassRecord
+
+
+class ComputeClass:
+    """Dispatches the work groups that the pass names."""
+
+    def access(self, project: Project, pass_: Pass) -> Access:
+        access = Access()
+        if isinstance(pass_, ComputePass) and pass_.material is not None:
+            library = pass_.material.fromLibrary or DEFAULT_LIBRARY
+            add_material(access, project, library, pass_.material.name or "")
+            for source in (pass_.material.bufferX, pass_.material.bufferY, pass_.material.bufferZ):
+                if source:
+                    access.add_read(buffer(source, None))
+        add_process(access, pass_)
+        return access
+
+    def groups(self, pass_: ComputePass, frame: FrameContext) -> tuple[int, int, int]:
+        """Work groups along x, y, z; DIM_* child tags override the material's numbers."""
+        counts = []
+        for axis in "XYZ":
+            if f"DIM_{axis}" in pass_.settings:
+                counts.append(int(pass_value(frame.project, pass_, f"DIM_{axis}")))
+                continue
+            source = getattr(pass_.material, f"buffer{axis}")
+            storage = frame.session.resources.buffer(source) if source else None
+            if storage is not None:
+                offset = getattr(pass_.material, f"offset{axis}") or 0
+                raw = storage.read(4, offset=offset)
+                counts.append(int(np.frombuffer(raw, np.uint32)[0]))
+            else:
+                written = getattr(pass_.material, f"dim{axis}")
+                counts.append(int(frame.project.number(written, 1.0)))
+        return counts[0], counts[1], counts[2]
+
+    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
+        from nau_py.raster.draw import bind_material, set_uniforms, unbind_material
+
+        if not isinstance(pass_, ComputePass) or pass_.material is None:
+            return
+        resources = frame.session.resources
+        process(list(pass_.preProcess), frame)
+        library = pass_.material.fromLibrary or DEFAULT_LIBRARY
+        material = frame.world.materials.get(library, pass_.material.name or "")
+        program = resources.program(*material.program) if material else None
+        if material is None or program is None or not program.is_compute:
+            return
+        context = draw_context(pass_, frame, resources.window, identity(), identity(), lights=False)
+        context.material = material
+        bind_material(resources, material)
+        set_uniforms(program, context)
+        groups = self.groups(pass_, frame)
+        if all(groups):
+            program.mgl.run(*groups)
+        unbind_material(material)
+        resources.barrier()
+        process(list(pass_.postProcess), frame)

@@ -1,0 +1,132 @@
+"""What the drawing pass classes share: target, viewport, clears, uniforms' context."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from nau_py.model.linked import Project
+from nau_py.model.passes import Pass, ProcessTexture
+from nau_py.passes.access import target_reference, texture
+from nau_py.passes.frame import FrameContext, PassRecord
+from nau_py.scene.mesh import F64
+from nau_py.scene.viewport import Rect
+
+if TYPE_CHECKING:
+    from nau_py.raster.semantics import DrawContext
+    from nau_py.raster.targets import Target
+
+
+def pass_value(project: Project, pass_: Pass, name: str) -> bool | int | float | str:
+    """The first component of a PASS attribute."""
+    return project.value(pass_, "PASS", name)[0]
+
+
+def viewport_names(pass_: Pass) -> list[str]:
+    """The viewports that a pass names; the first one counts for clearing and aspect."""
+    single = [pass_.viewport.name] if pass_.viewport and pass_.viewport.name else []
+    return single + [v.name for v in pass_.viewports if v.name]
+
+
+def target_and_rect(
+    pass_: Pass, frame: FrameContext, uses_camera: bool
+) -> tuple[Target, Rect]:
+    """Where a pass draws (nau-format.md, 11.5)."""
+    session = frame.session
+    reference = target_reference(frame.project, pass_)
+    names = viewport_names(pass_)
+    rect = frame.world.viewport(names[0]) if names else None
+    if reference is None:
+        if rect is None:
+            rect = frame.rect
+            if uses_camera:
+                camera = frame.camera
+                kept = session.camera_rects.get(camera.name)
+                rect = kept or frame.world.viewport(camera.viewport)
+        return session.resources.window, rect
+    target = session.resources.target(reference.fromLibrary or "", reference.name or "")
+    if rect is None:
+        rect = Rect(0.0, 0.0, float(target.width), float(target.height), target.clear)
+        if uses_camera:
+            session.camera_rects[frame.camera.name] = rect
+    else:
+        target.resize(max(int(rect.width), 1), max(int(rect.height), 1))
+        rect = Rect(rect.x, rect.y, rect.width, rect.height, target.clear)
+    return target, rect
+
+
+def begin(pass_: Pass, frame: FrameContext, uses_camera: bool, clears: bool = True) -> Target:
+    """Bind the target of a pass and clear it. Leaves the pass's rectangle in ``frame.rect``."""
+    from nau_py.raster.state import apply_stencil, reset_state
+
+    project = frame.project
+    target, rect = target_and_rect(pass_, frame, uses_camera)
+    frame.rect = rect
+    reset_state()
+    target.bind(rect)
+    if clears:
+        depth_writes = bool(pass_value(project, pass_, "DEPTH_MASK"))
+        if pass_value(project, pass_, "COLOR_CLEAR"):
+            target.clear_color(rect.clear)
+        if pass_value(project, pass_, "DEPTH_CLEAR") and depth_writes:
+            target.clear_depth(float(pass_value(project, pass_, "DEPTH_CLEAR_VALUE")))
+        if pass_value(project, pass_, "STENCIL_CLEAR"):
+            target.clear_stencil(int(pass_value(project, pass_, "STENCIL_CLEAR_VALUE")))
+    names = [a.name for a in project.registry["PASS"] if a.name.startswith("STENCIL")]
+    apply_stencil({name: project.value(pass_, "PASS", name) for name in names})
+    return target
+
+
+def draw_context(
+    pass_: Pass, frame: FrameContext, target: Target, projection: F64, view: F64, lights: bool
+) -> DrawContext:
+    """The context that uniform sources of this pass refer to."""
+    from nau_py.raster.semantics import DrawContext
+
+    instances = int(pass_value(frame.project, pass_, "INSTANCE_COUNT"))
+    if not instances and pass_.scenes is not None:
+        instances = int(frame.project.number(pass_.scenes.instances))
+    return DrawContext(
+        frame.world,
+        frame.session.resources,
+        pass_,
+        frame.index,
+        frame.timer_ms,
+        frame.camera,
+        frame.rect,
+        frame.lights(pass_) if lights else [],
+        projection,
+        view,
+        target.name,
+        instances=instances,
+    )
+
+
+def identity() -> F64:
+    return np.eye(4)
+
+
+def process(items: list[object], frame: FrameContext) -> None:
+    """Run pre- or post-process items (nau-format.md, 4.5)."""
+    resources = frame.session.resources
+    for item in items:
+        if not isinstance(item, ProcessTexture):
+            continue
+        found = resources.texture(texture(item.name, item.fromLibrary).name)
+        if found is None:
+            continue
+        settings = {name: setting.parts[0] for name, setting in item.settings.items()}
+        if settings.get("CLEAR"):
+            found.clear()
+        if settings.get("MIPMAP"):
+            found.generate_mipmaps()
+
+
+def covered(rect: Rect) -> int:
+    """Pixels of a rectangle."""
+    return max(int(rect.width), 0) * max(int(rect.height), 0)
+
+
+def note_pixels(record: PassRecord, frame: FrameContext) -> None:
+    record.pixels = covered(frame.rect)

@@ -1,0 +1,103 @@
+"""What a pass executes on: the frame, and the record of what the pass cost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from nau_py.model.linked import Project
+from nau_py.model.passes import Pass
+from nau_py.scene.camera import CameraState
+from nau_py.scene.lights import LightState
+from nau_py.scene.mapping import PassMaterials
+from nau_py.scene.viewport import Rect
+from nau_py.scene.world import World
+
+if TYPE_CHECKING:
+    from nau_py.raster.resources import Resources
+
+
+@dataclass(slots=True)
+class RunOptions:
+    """What the user asks of a run, beside the project.
+
+    ``samples`` overrides RAYS_PER_PIXEL; ``threads`` of 0 means one a core.
+    """
+
+    samples: int | None = None
+    seed: int = 0
+    threads: int = 0
+    allow_programs: tuple[str, ...] = ()
+    no_programs: bool = False
+    tile: int = 16384
+
+
+@dataclass(slots=True)
+class PassRecord:
+    """What a pass did. ``rays`` counts rays by kind; ``avoided`` the primary rays not traced."""
+
+    name: str
+    pass_class: str
+    status: str = "run"
+    reason: str = ""
+    ms: float = 0.0
+    pixels: int = 0
+    rays: dict[str, int] = field(default_factory=dict)
+    avoided: int = 0
+    est_error: float | None = None
+    nonfinite: int = 0
+    notes: list[str] = field(default_factory=list)
+
+
+Progress = Callable[[str, int, int], None]
+"""``progress(pass name, done, total)`` while a pass works."""
+
+
+def no_progress(name: str, done: int, total: int) -> None:
+    """Say nothing."""
+
+
+@dataclass(slots=True)
+class Session:
+    """What lasts from frame to frame: world, GPU resources, camera viewports, tracers."""
+
+    project: Project
+    pipeline: str
+    world: World
+    resources: Resources
+    options: RunOptions
+    camera_rects: dict[str, Rect] = field(default_factory=dict)
+    materials: dict[str, PassMaterials] = field(default_factory=dict)
+    tracers: dict[str, Any] = field(default_factory=dict)
+    progress: Progress = no_progress
+
+    def pass_materials(self, pass_: Pass) -> PassMaterials:
+        """The material mapping of a pass, made once."""
+        key = pass_.name or ""
+        if key not in self.materials:
+            self.materials[key] = self.world.materials.for_pass(pass_, self.pipeline)
+        return self.materials[key]
+
+
+@dataclass(slots=True)
+class FrameContext:
+    """One frame in the making."""
+
+    session: Session
+    index: int
+    timer_ms: float
+    camera: CameraState
+    rect: Rect
+
+    @property
+    def project(self) -> Project:
+        return self.session.project
+
+    @property
+    def world(self) -> World:
+        return self.session.world
+
+    def lights(self, pass_: Pass) -> list[LightState]:
+        """The lights of a pass, by light index."""
+        return [self.world.light(light.name or "") for light in pass_.lights]

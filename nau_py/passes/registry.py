@@ -1,0 +1,54 @@
+"""The pass classes that nau_py has, built in and from plug-ins.
+
+A plug-in is an entry point of the group ``nau_py.passes`` whose name is the pass class and whose
+object is a :class:`PassClass`.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from importlib.metadata import entry_points
+from typing import TYPE_CHECKING, Protocol
+
+from nau_py.graph.contract import Access
+from nau_py.model.linked import Project
+from nau_py.model.passes import Pass
+
+if TYPE_CHECKING:
+    from nau_py.passes.frame import FrameContext, PassRecord
+
+
+class PassClass(Protocol):
+    """One pass class: a pure half for planning and a half that runs."""
+
+    def access(self, project: Project, pass_: Pass) -> Access:
+        """What ``pass_`` reads and writes. Pure."""
+        ...
+
+    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
+        """Run ``pass_`` once and note what it cost in ``record``."""
+        ...
+
+
+@lru_cache(maxsize=1)
+def pass_classes() -> dict[str, PassClass]:
+    """Pass classes by name."""
+    from nau_py.passes.compute import ComputeClass
+    from nau_py.passes.default import DefaultClass
+    from nau_py.passes.depthmap import DepthmapClass
+    from nau_py.passes.quad import QuadClass
+    from nau_py.passes.raytrace import RaytraceClass
+
+    raytrace = RaytraceClass()
+    found: dict[str, PassClass] = {
+        "default": DefaultClass(),
+        "quad": QuadClass(),
+        "depthmap": DepthmapClass(),
+        "compute": ComputeClass(),
+        "raytrace": raytrace,
+        "rt": raytrace,
+        "optix": raytrace,
+    }
+    for entry in entry_points(group="nau_py.passes"):
+        found.setdefault(entry.name, entry.load())
+    return found

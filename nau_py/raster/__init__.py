@@ -1,0 +1,1 @@
+"""OpenGL: device, programs, uniforms, states, textures, targets, drawing. Knows no pass order."""

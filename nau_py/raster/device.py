@@ -1,0 +1,49 @@
+"""The OpenGL context: headless EGL, hardware or Mesa's software driver."""
+
+from __future__ import annotations
+
+import sys
+from functools import lru_cache
+
+import moderngl
+
+from nau_py.diagnostic import error
+from nau_py.errors import DeviceError
+from nau_py.model.location import NOWHERE
+
+REQUIRED_VERSION = 450
+HOW_TO_GET = (
+    "install Mesa's drivers (Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri), "
+    "which draw without a GPU"
+)
+
+
+class Device:
+    """A moderngl context that is current in this thread."""
+
+    def __init__(self) -> None:
+        options = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+        try:
+            self.ctx = moderngl.create_context(standalone=True, require=REQUIRED_VERSION, **options)
+        except Exception as problem:  # glcontext raises plain Exception
+            raise DeviceError(
+                error(
+                    "D001",
+                    NOWHERE,
+                    f"no OpenGL {REQUIRED_VERSION / 100:.1f} driver: {problem}; {HOW_TO_GET}",
+                )
+            ) from None
+        self.ctx.gc_mode = "auto"
+        info = self.ctx.info
+        self.renderer = str(info["GL_RENDERER"])
+        self.version = str(info["GL_VERSION"])
+
+    @property
+    def is_software(self) -> bool:
+        return "llvmpipe" in self.renderer or "softpipe" in self.renderer
+
+
+@lru_cache(maxsize=1)
+def device() -> Device:
+    """The process's device, made at first use. Raises :class:`~nau_py.errors.DeviceError`."""
+    return Device()

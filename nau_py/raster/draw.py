@@ -1,0 +1,130 @@
+"""Drawing: materials prepared, geometry sent, in Nau's order (nau-format.md, 11.6)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import moderngl
+
+from nau_py.raster.gl import GL
+from nau_py.raster.programs import Program
+from nau_py.raster.resources import Resources
+from nau_py.raster.semantics import DrawContext, resolve
+from nau_py.raster.state import apply_state
+from nau_py.scene.material import RenderMaterial
+from nau_py.scene.mesh import F64, Mesh, SceneObject
+
+_MODES = {"TRIANGLES": moderngl.TRIANGLES, "LINES": moderngl.LINES, "POINTS": moderngl.POINTS}
+_ACCESS = {"READ_ONLY": GL.GL_READ_ONLY, "WRITE_ONLY": GL.GL_WRITE_ONLY,
+           "READ_WRITE": GL.GL_READ_WRITE}
+_BUFFER_TARGETS = {"SHADER_STORAGE": GL.GL_SHADER_STORAGE_BUFFER, "UNIFORM": GL.GL_UNIFORM_BUFFER,
+                   "ATOMIC_COUNTER": GL.GL_ATOMIC_COUNTER_BUFFER}
+
+
+@dataclass(slots=True)
+class DrawItem:
+    """One material group of one object."""
+
+    mesh: Mesh
+    group: int
+    material: RenderMaterial
+    matrix: F64
+
+
+def draw_list(
+    objects: list[SceneObject], material_of: Callable[[str], RenderMaterial | None]
+) -> list[DrawItem]:
+    """What to draw, by ORDER, then material, then object: a stable order."""
+    items: list[DrawItem] = []
+    seen: dict[int, int] = {}
+    for item in objects:
+        for index, group in enumerate(item.mesh.groups):
+            material = material_of(group.material)
+            if material is not None and material.enabled and len(group.indices):
+                seen.setdefault(id(material), len(seen))
+                items.append(DrawItem(item.mesh, index, material, item.matrix))
+    return sorted(items, key=lambda d: (d.material.order, seen[id(d.material)]))
+
+
+def bind_material(resources: Resources, material: RenderMaterial) -> None:
+    """Bind a material's textures, images, buffers and state."""
+    for unit, binding in material.textures.items():
+        texture = resources.texture(binding.texture, binding.path)
+        if texture is not None:
+            GL.glBindTextureUnit(unit, texture.glo)
+            GL.glBindSampler(unit, resources.samplers.get(binding.sampler, texture.levels > 1))
+    for unit, image in material.images.items():
+        texture = resources.texture(image.texture)
+        if texture is not None:
+            _bind_image(unit, texture, dict(image.settings))
+    for bound in material.buffers:
+        storage = resources.buffer(bound.buffer)
+        if storage is not None:
+            GL.glBindBufferBase(_BUFFER_TARGETS[bound.type], bound.point, storage.glo)
+    apply_state(material.state)
+
+
+def _bind_image(unit: int, texture: Any, settings: dict[str, Any]) -> None:
+    from nau_py.raster.formats import pixel_format
+
+    level = int(settings.get("LEVEL", (0,))[0])
+    access = _ACCESS[str(settings.get("ACCESS", ("WRITE_ONLY",))[0])]
+    name = settings.get("INTERNAL_FORMAT", (texture.format.name,))[0]
+    if settings.get("CLEAR", (False,))[0]:
+        texture.clear()
+    fmt = pixel_format(str(name)).internal
+    GL.glBindImageTexture(unit, texture.glo, level, GL.GL_TRUE, 0, access, fmt)
+
+
+def unbind_material(material: RenderMaterial) -> None:
+    """Leave no texture of ``material`` behind for the next one."""
+    for unit in material.textures:
+        GL.glBindTextureUnit(unit, 0)
+        GL.glBindSampler(unit, 0)
+
+
+def set_uniforms(program: Program, context: DrawContext) -> None:
+    """Upload the values of the current material's sources."""
+    material = context.material
+    if material is None:
+        return
+    for source in material.uniforms:
+        if source.block:
+            continue
+        value = resolve(context, source.type, source.context, source.component, source.id)
+        if value is not None:
+            program.set(source.uniform, value)
+
+
+def draw(items: list[DrawItem], context: DrawContext) -> None:
+    """Draw ``items`` into the bound target."""
+    resources = context.resources
+    previous: RenderMaterial | None = None
+    for item in items:
+        program = resources.program(*item.material.program)
+        if program is None or program.is_compute:
+            continue
+        if item.material is not previous:
+            if previous is not None:
+                unbind_material(previous)
+            bind_material(resources, item.material)
+            previous = item.material
+        context.material, context.model = item.material, item.matrix
+        set_uniforms(program, context)
+        discard = not program.has_fragment
+        if discard:
+            GL.glEnable(GL.GL_RASTERIZER_DISCARD)
+        array = resources.geometry.vertex_array(item.mesh, program)
+        gpu = resources.geometry.upload(item.mesh)
+        array.render(
+            _MODES[item.mesh.primitive],
+            vertices=gpu.count[item.group],
+            first=gpu.first[item.group],
+            instances=max(context.instances, 1),
+        )
+        if discard:
+            GL.glDisable(GL.GL_RASTERIZER_DISCARD)
+    if previous is not None:
+        unbind_material(previous)

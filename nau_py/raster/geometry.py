@@ -1,0 +1,57 @@
+"""Meshes on the GPU."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from nau_py.raster.programs import Program
+from nau_py.scene.mesh import Mesh
+
+
+@dataclass(slots=True)
+class GpuMesh:
+    """Vertex buffers by attribute, one index buffer, and where each group begins in it."""
+
+    buffers: dict[str, Any]
+    indices: Any
+    first: list[int]
+    count: list[int]
+
+
+class Geometry:
+    """Uploads meshes once and keeps a vertex array per mesh and program."""
+
+    def __init__(self, ctx: Any) -> None:
+        self._ctx = ctx
+        self._meshes: dict[int, tuple[Mesh, GpuMesh]] = {}
+        self._arrays: dict[tuple[int, int], Any] = {}
+
+    def upload(self, mesh: Mesh) -> GpuMesh:
+        """The GPU copy of ``mesh``; a mesh is never changed after it was loaded."""
+        found = self._meshes.get(id(mesh))
+        if found is not None:
+            return found[1]
+        buffers = {
+            name: self._ctx.buffer(np.ascontiguousarray(values).tobytes())
+            for name, values in mesh.attributes.items()
+        }
+        counts = [group.indices.size for group in mesh.groups]
+        first = [0, *np.cumsum(counts)[:-1].tolist()]
+        flat = np.concatenate([group.indices.reshape(-1) for group in mesh.groups])
+        gpu = GpuMesh(buffers, self._ctx.buffer(flat.astype(np.uint32).tobytes()), first, counts)
+        self._meshes[id(mesh)] = (mesh, gpu)
+        return gpu
+
+    def vertex_array(self, mesh: Mesh, program: Program) -> Any:
+        """The vertex array that feeds ``mesh`` to ``program``, inputs matched by name."""
+        key = (id(mesh), program.mgl.glo)
+        if key not in self._arrays:
+            gpu = self.upload(mesh)
+            content = [
+                (gpu.buffers[name], "4f", name) for name in program.inputs if name in gpu.buffers
+            ]
+            self._arrays[key] = self._ctx.vertex_array(program.mgl, content, gpu.indices)
+        return self._arrays[key]

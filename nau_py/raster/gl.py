@@ -1,0 +1,135 @@
+"""Raw OpenGL for what moderngl lacks or drops: the only file that imports PyOpenGL.
+
+It works on the context that :mod:`nau_py.raster.device` made current.
+"""
+
+from __future__ import annotations
+
+import os
+
+os.environ.setdefault("PYOPENGL_PLATFORM", "egl")
+
+import OpenGL
+
+OpenGL.ERROR_CHECKING = False
+OpenGL.ERROR_LOGGING = False
+OpenGL.ERROR_ON_COPY = False
+
+from typing import Any  # noqa: E402
+
+import numpy as np  # noqa: E402
+from numpy.typing import NDArray  # noqa: E402
+from OpenGL import GL  # noqa: E402
+
+Array = NDArray[Any]
+
+_UNIFORM_F = {1: "glProgramUniform1fv", 2: "glProgramUniform2fv", 3: "glProgramUniform3fv",
+              4: "glProgramUniform4fv"}
+_UNIFORM_I = {1: "glProgramUniform1iv", 2: "glProgramUniform2iv", 3: "glProgramUniform3iv",
+              4: "glProgramUniform4iv"}
+_UNIFORM_U = {1: "glProgramUniform1uiv", 2: "glProgramUniform2uiv", 3: "glProgramUniform3uiv",
+              4: "glProgramUniform4uiv"}
+_FLOAT_TYPES = {GL.GL_FLOAT: 1, GL.GL_FLOAT_VEC2: 2, GL.GL_FLOAT_VEC3: 3, GL.GL_FLOAT_VEC4: 4}
+_INT_TYPES = {GL.GL_INT: 1, GL.GL_INT_VEC2: 2, GL.GL_INT_VEC3: 3, GL.GL_INT_VEC4: 4,
+              GL.GL_BOOL: 1, GL.GL_BOOL_VEC2: 2, GL.GL_BOOL_VEC3: 3, GL.GL_BOOL_VEC4: 4}
+_UINT_TYPES = {GL.GL_UNSIGNED_INT: 1, GL.GL_UNSIGNED_INT_VEC2: 2, GL.GL_UNSIGNED_INT_VEC3: 3,
+               GL.GL_UNSIGNED_INT_VEC4: 4}
+_MATRIX_TYPES = {GL.GL_FLOAT_MAT3: (9, "glProgramUniformMatrix3fv"),
+                 GL.GL_FLOAT_MAT4: (16, "glProgramUniformMatrix4fv")}
+
+
+def get_error() -> int:
+    """The oldest OpenGL error since the last call; 0 for none."""
+    return int(GL.glGetError())
+
+
+def components_of(gl_type: int) -> int:
+    """Scalars of one element of a uniform of ``gl_type``; 1 for samplers and images."""
+    if gl_type in _MATRIX_TYPES:
+        return _MATRIX_TYPES[gl_type][0]
+    for table in (_FLOAT_TYPES, _INT_TYPES, _UINT_TYPES):
+        if gl_type in table:
+            return table[gl_type]
+    return 1
+
+
+def uniform_dtype(gl_type: int) -> type[np.generic]:
+    """The dtype to upload for a uniform of ``gl_type``; int32 for samplers and images."""
+    if gl_type in _FLOAT_TYPES or gl_type in _MATRIX_TYPES:
+        return np.float32
+    return np.uint32 if gl_type in _UINT_TYPES else np.int32
+
+
+def set_uniform(program: int, location: int, gl_type: int, count: int, value: Array) -> None:
+    """Upload ``count`` elements. ``value``: flat, of :func:`uniform_dtype`, column-major."""
+    if gl_type in _MATRIX_TYPES:
+        getattr(GL, _MATRIX_TYPES[gl_type][1])(program, location, count, GL.GL_FALSE, value)
+        return
+    width = components_of(gl_type)
+    table = {np.float32: _UNIFORM_F, np.int32: _UNIFORM_I, np.uint32: _UNIFORM_U}
+    getattr(GL, table[uniform_dtype(gl_type)][width])(program, location, count, value)  # type: ignore[index]
+
+
+def create_texture(target: int) -> int:
+    name = np.zeros(1, np.uint32)
+    GL.glCreateTextures(target, 1, name)
+    return int(name[0])
+
+
+def create_framebuffer() -> int:
+    name = np.zeros(1, np.uint32)
+    GL.glCreateFramebuffers(1, name)
+    return int(name[0])
+
+
+def create_sampler() -> int:
+    name = np.zeros(1, np.uint32)
+    GL.glCreateSamplers(1, name)
+    return int(name[0])
+
+
+def delete_textures(names: list[int]) -> None:
+    GL.glDeleteTextures(len(names), np.array(names, np.uint32))
+
+
+def delete_framebuffer(name: int) -> None:
+    GL.glDeleteFramebuffers(1, np.array([name], np.uint32))
+
+
+def read_texture(name: int, level: int, layout: int, kind: int, out: Array) -> None:
+    """Read a texture level into ``out``, rows from the bottom up."""
+    GL.glPixelStorei(GL.GL_PACK_ALIGNMENT, 1)
+    GL.glMemoryBarrier(GL.GL_ALL_BARRIER_BITS)
+    GL.glGetTextureImage(name, level, layout, kind, out.nbytes, out)
+
+
+def upload_2d(
+    name: int, width: int, height: int, layout: int, kind: int, data: Array, level: int = 0
+) -> None:
+    """Fill a texture level; ``data`` rows run from the bottom up."""
+    GL.glPixelStorei(GL.GL_UNPACK_ALIGNMENT, 1)
+    GL.glTextureSubImage2D(name, level, 0, 0, width, height, layout, kind, np.ascontiguousarray(data))
+
+
+def upload_face(
+    name: int, face: int, width: int, height: int, layout: int, kind: int, data: Array
+) -> None:
+    """Fill one face of a cube map."""
+    GL.glPixelStorei(GL.GL_UNPACK_ALIGNMENT, 1)
+    GL.glTextureSubImage3D(
+        name, 0, 0, 0, face, width, height, 1, layout, kind, np.ascontiguousarray(data)
+    )
+
+
+def clear_texture(name: int, levels: int, layout: int, kind: int) -> None:
+    """Fill every level with zero."""
+    for level in range(levels):
+        GL.glClearTexImage(name, level, layout, kind, None)
+
+
+def barrier() -> None:
+    """Make all shader writes visible to everything that follows."""
+    GL.glMemoryBarrier(GL.GL_ALL_BARRIER_BITS)
+
+
+__all__ = ["GL"]

@@ -1,0 +1,159 @@
+"""GLSL programs: sources, compilation, and errors mapped to the files that people wrote."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import moderngl
+import numpy as np
+
+from nau_py.diagnostic import Diagnostic, error
+from nau_py.errors import ShaderError
+from nau_py.model.location import Location
+from nau_py.model.shader import STAGES, Shader
+from nau_py.paths import resolve
+from nau_py.raster import gl
+
+_STAGE_NAMES = {
+    "vs": "vertex_shader",
+    "gs": "geometry_shader",
+    "tc": "tess_control_shader",
+    "te": "tess_evaluation_shader",
+    "ps": "fragment_shader",
+}
+_LOG_LINE = re.compile(
+    r"^\s*(?:ERROR:\s*)?(?P<file>\d+)[:(](?P<line>\d+)\)?(?:\((?P<column>\d+)\))?\s*:\s*"
+    r"(?P<text>.*)$",
+    re.IGNORECASE,
+)
+
+
+@dataclass(slots=True)
+class StageSource:
+    """The text of one stage and the files it came from; ``skipped`` leading lines were dropped."""
+
+    text: str
+    files: list[Path]
+    skipped: int
+
+
+@dataclass(slots=True)
+class UniformSlot:
+    """An active uniform and the bytes last uploaded to it."""
+
+    location: int
+    gl_type: int
+    count: int
+    last: bytes = b""
+
+
+@dataclass(slots=True)
+class Program:
+    """A linked program with its active uniforms."""
+
+    library: str
+    name: str
+    mgl: Any
+    uniforms: dict[str, UniformSlot]
+    inputs: list[str]
+    has_fragment: bool
+    is_compute: bool
+    blocks: dict[str, Any] = field(default_factory=dict)
+
+    def set(self, name: str, value: np.ndarray[Any, Any]) -> None:
+        """Upload a flat value, cut or zero-filled to the size that the shader declares."""
+        slot = self.uniforms.get(name) or self.uniforms.get(name.removesuffix("[0]"))
+        if slot is None:
+            return
+        wanted = gl.components_of(slot.gl_type) * slot.count
+        flat = np.zeros(wanted, gl.uniform_dtype(slot.gl_type))
+        given = value.reshape(-1)[:wanted]
+        flat[: len(given)] = given
+        raw = flat.tobytes()
+        if raw != slot.last:
+            gl.set_uniform(self.mgl.glo, slot.location, slot.gl_type, slot.count, flat)
+            slot.last = raw
+
+
+def read_stage(shader: Shader, stage: str) -> StageSource | None:
+    """The concatenated files of a stage, with line directives between them (nau-format.md, 6.5)."""
+    names = shader.files(stage)
+    if not names:
+        return None
+    folder = Path(shader.location.file).parent
+    files = [resolve(folder, name).best for name in names]
+    texts = []
+    for index, file in enumerate(files):
+        try:
+            text = file.read_bytes().decode("utf-8", "replace").lstrip("\ufeff")
+        except OSError as problem:
+            where = shader.where(stage)
+            message = f"shader '{shader.name}', stage {stage}: file '{file}': {problem.strerror}"
+            raise ShaderError(error("G002", where, message)) from None
+        texts.append(text if index == 0 else f"\n#line 1 {index}\n{text}")
+    whole = "".join(texts)
+    stripped = whole.lstrip()
+    return StageSource(stripped, files, whole[: len(whole) - len(stripped)].count("\n"))
+
+
+def _located(
+    log: str, sources: dict[str, StageSource], shader: Shader, label: str
+) -> list[Diagnostic]:
+    """Diagnostics from a driver's log: each error at its own file, line and column."""
+    found: list[Diagnostic] = []
+    stage = next(iter(sources))
+    headings = {name: key for key, name in _STAGE_NAMES.items()} | {"compute_shader": "cs"}
+    for line in log.splitlines():
+        stage = headings.get(line.strip(), stage)
+        match = _LOG_LINE.match(line)
+        if match is None or "warning" in match["text"].lower().split(":")[0]:
+            continue
+        source = sources[stage] if stage in sources else next(iter(sources.values()))
+        index = min(int(match["file"]), len(source.files) - 1)
+        row = int(match["line"]) + (source.skipped if index == 0 else 0)
+        where = Location(str(source.files[index]), row, int(match["column"] or 1))
+        text = re.sub(r"^error\s*\w*\s*:\s*", "", match["text"], flags=re.IGNORECASE)
+        found.append(error("G001", where, f"{label}, stage {stage}: {text}"))
+    if not found:
+        text = " ".join(part.strip() for part in log.splitlines() if part.strip())
+        found.append(error("G003", shader.location, f"{label} does not link: {text}"))
+    return found
+
+
+def compile_program(ctx: Any, library: str, shader: Shader) -> Program:
+    """Compile and link. Raises :class:`~nau_py.errors.ShaderError`."""
+    label = f"shader '{shader.name}' of library '{library}'"
+    sources = {s: src for s in STAGES if (src := read_stage(shader, s)) is not None}
+    unsupported = [s for s in ("ts", "ms") if s in sources]
+    if unsupported:
+        message = f"{label}: stage {unsupported[0]} needs NV_mesh_shader, which is not supported"
+        raise ShaderError(error("G004", shader.where(unsupported[0]), message))
+    try:
+        if "cs" in sources:
+            made = ctx.compute_shader(sources["cs"].text)
+        else:
+            texts = {_STAGE_NAMES[s]: source.text for s, source in sources.items()}
+            made = ctx.program(**texts)
+    except moderngl.Error as problem:
+        raise ShaderError(_located(str(problem), sources, shader, label)) from None
+    except KeyError as problem:
+        message = f"{label}: #include {problem} is not supported"
+        raise ShaderError(error("G001", shader.location, message)) from None
+    uniforms: dict[str, UniformSlot] = {}
+    inputs: list[str] = []
+    blocks: dict[str, Any] = {}
+    for name in made:
+        member = made[name]
+        if isinstance(member, moderngl.Uniform):
+            length = max(int(member.array_length), 1)
+            uniforms[name] = UniformSlot(int(member.location), int(member.gl_type), length)
+        elif isinstance(member, moderngl.Attribute) and not name.startswith("gl_"):
+            inputs.append(name)
+        elif isinstance(member, moderngl.UniformBlock):
+            blocks[name] = member
+    return Program(
+        library, shader.name or "", made, uniforms, inputs, "ps" in sources, "cs" in sources, blocks
+    )

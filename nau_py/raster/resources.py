@@ -1,0 +1,214 @@
+"""The GPU resources of a project by qualified name, made when first used."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from nau_py.diagnostic import Diagnostic, error, warning
+from nau_py.errors import NauError, ProjectError, ShaderError
+from nau_py.model.attributes.texture import channels
+from nau_py.model.linked import Project
+from nau_py.model.target import RenderTarget
+from nau_py.model.texture import ArrayOfTextures, CubeMap
+from nau_py.model.texture import Texture as TextureNode
+from nau_py.paths import resolve
+from nau_py.raster import gl
+from nau_py.raster.device import Device
+from nau_py.raster.geometry import Geometry
+from nau_py.raster.programs import Program, compile_program
+from nau_py.raster.samplers import Samplers
+from nau_py.raster.targets import COMPLETE, Attachment, Target, window_target
+from nau_py.raster.textures import Texture, cube_from_images, from_image, make_2d
+from nau_py.scene.images import ImageError, load_image
+
+if TYPE_CHECKING:
+    from nau_py.raster.semantics import DrawContext, Value
+
+
+class Resources:
+    """Textures, buffers, targets and programs of one project on one device.
+
+    ``diagnostics`` collects what could not be made; the draw that needs it goes on without.
+    """
+
+    def __init__(self, device: Device, project: Project, window: tuple[int, int]) -> None:
+        self.device = device
+        self.project = project
+        self.samplers = Samplers()
+        self.geometry = Geometry(device.ctx)
+        self.window = window_target(*window)
+        self.diagnostics: list[Diagnostic] = []
+        self._targets: dict[str, Target] = {}
+        self._textures: dict[str, Texture | None] = {}
+        self._buffers: dict[str, Any] = {}
+        self._programs: dict[tuple[str, str], Program | None] = {}
+
+    def target(self, library: str, name: str) -> Target:
+        """A render target. Raises :class:`~nau_py.errors.ProjectError` where it is incomplete."""
+        key = f"{library}::{name}"
+        if key not in self._targets:
+            node = self.project.render_target(library, name)
+            if node is None:
+                raise ProjectError(
+                    error("R010", self.project.file.location, f"render target '{key}' is undefined")
+                )
+            self._targets[key] = self._make_target(library, node)
+        return self._targets[key]
+
+    def _make_target(self, library: str, node: RenderTarget) -> Target:
+        def value(name: str) -> tuple[Any, ...]:
+            return self.project.value(node, "RENDER_TARGET", name)
+
+        width, height = (int(v) for v in value("SIZE"))
+        if width < 1 or height < 1:
+            message = f"render target '{node.name}': SIZE is {width} x {height}, which holds no pixel"
+            raise ProjectError(error("P010", node.location, message))
+        colors = [Attachment(f"{library}::{c.name}", c.internalFormat or "RGBA") for c in node.colors]
+        fmt = "DEPTH24_STENCIL8" if node.depthStencil else "DEPTH_COMPONENT32F"
+        if node.depth is not None and node.depth.internalFormat:
+            fmt = node.depth.internalFormat
+        r, g, b, a = (float(v) for v in value("CLEAR_VALUES"))
+        target = Target(
+            f"{library}::{node.name}", width, height, colors,
+            Attachment(f"{library}::{node.depth_name}", fmt), (r, g, b, a),
+            max(int(value("LEVELS")[0]), 1), max(int(value("LAYERS")[0]), 1),
+        )
+        status = target.allocate()
+        if status != COMPLETE:
+            message = (
+                f"render target '{node.name}' is incomplete (OpenGL status {status:#x}): "
+                "check its size, its formats and the number of colours"
+            )
+            raise ProjectError(error("P010", node.location, message))
+        return target
+
+    def texture(self, name: str, path: Path | None = None) -> Texture | None:
+        """A texture by qualified name, or by path for an image file of a model.
+
+        None, with one diagnostic, where it cannot be made.
+        """
+        owner = self.project.target_of_texture(name)
+        if owner is not None:
+            return self.target(owner[0], owner[1].name or "").textures.get(name)
+        if name not in self._textures:
+            try:
+                self._textures[name] = self._make_texture(name, path)
+            except ImageError as problem:
+                where = self.project.file.location
+                message = f"texture '{name}': {problem}; it is drawn as unset"
+                self.diagnostics.append(warning("F004", where, message))
+                self._textures[name] = None
+        return self._textures[name]
+
+    def _make_texture(self, name: str, path: Path | None) -> Texture | None:
+        if path is not None:
+            return from_image(load_image(path), mipmap=True)
+        node = self.project.names("texture").get(name)
+        if isinstance(node, CubeMap):
+            folder = Path(node.location.file).parent
+            axes = ("PosX", "NegX", "PosY", "NegY", "PosZ", "NegZ")
+            files = [resolve(folder, getattr(node, f"file{axis}") or "").best for axis in axes]
+            faces = [_rgba(load_image(file)) for file in files]
+            if len({face.shape for face in faces}) > 1:
+                raise ImageError("its six faces differ in size")
+            return cube_from_images(faces, node.mipmap == "true")
+        if isinstance(node, TextureNode) and node.filename:
+            file = resolve(Path(node.location.file).parent, node.filename).best
+            return from_image(load_image(file), bool(node.mipmap))
+        if isinstance(node, TextureNode):
+            return self._empty(node, "TEXTURE")
+        if isinstance(node, ArrayOfTextures):
+            return self._empty(node, "ARRAY_OF_TEXTURES")
+        return None
+
+    def _empty(self, node: TextureNode | ArrayOfTextures, type_: str) -> Texture:
+        def number(attribute: str) -> int:
+            return int(self.project.value(node, type_, attribute)[0])
+
+        fmt = str(self.project.value(node, type_, "INTERNAL_FORMAT")[0])
+        width, height, depth = (max(number(k), 1) for k in ("WIDTH", "HEIGHT", "DEPTH"))
+        levels = max(number("LEVELS"), 1)
+        if self.project.value(node, type_, "MIPMAP")[0]:
+            levels = max(int(np.log2(max(width, height, depth))), 1)
+        content = "NONE"
+        if type_ == "TEXTURE":
+            content = str(self.project.value(node, type_, "CONTENT")[0])
+        if content == "NONE":
+            return make_2d(fmt, width, height, levels, max(number("LAYERS"), 1), depth)
+        wide = channels(fmt)
+        texture = make_2d({1: "R32F", 2: "RG32F", 4: "RGBA32F"}[wide], width, height, levels)
+        random = np.random.default_rng(0)
+        shape = (height, width, wide)
+        normal = content == "RANDOM_NORMAL"
+        values = random.standard_normal(shape) if normal else random.random(shape)
+        texture.write(values.astype(np.float32))
+        return texture
+
+    def buffer(self, name: str) -> Any:
+        """A GPU buffer, zero-filled at first; None where it is undefined or empty."""
+        if name not in self._buffers:
+            node = self.project.names("buffer").get(name)
+            size = 0
+            if node is not None and not isinstance(node, ArrayOfTextures):
+                size = int(self.project.value(node, "BUFFER", "SIZE")[0])  # type: ignore[arg-type]
+            self._buffers[name] = self.device.ctx.buffer(reserve=size) if size else None
+            if size:
+                self._buffers[name].clear()
+        return self._buffers[name]
+
+    def program(self, library: str, name: str) -> Program | None:
+        """A program; None, with its diagnostics, where it does not compile."""
+        key = (library, name)
+        if key not in self._programs:
+            found = self.project.shader(library, name)
+            self._programs[key] = None
+            if found is not None:
+                try:
+                    self._programs[key] = compile_program(self.device.ctx, library, found[1])
+                except ShaderError as problem:
+                    self.diagnostics += problem.diagnostics
+        return self._programs[key]
+
+    def check(self) -> None:
+        """Raise what has gone wrong so far, if any of it is an error."""
+        errors = [d for d in self.diagnostics if d.severity == "error"]
+        if errors:
+            raise NauError(errors)
+
+    def value(
+        self, type_: str, name: str, component: str, index: int, context: DrawContext
+    ) -> Value | None:
+        """A TEXTURE, BUFFER or RENDER_TARGET attribute for a uniform."""
+        if type_ == "RENDER_TARGET":
+            target = self._targets.get((context.target or "") if name == "CURRENT" else name)
+            if target is not None and component == "SIZE":
+                return np.array([target.width, target.height])
+            return None
+        if type_ in ("TEXTURE", "TEXTURE_MATERIAL"):
+            if name == "CURRENT":
+                bound = context.material.textures.get(index) if context.material else None
+                texture = self.texture(bound.texture, bound.path) if bound else None
+            else:
+                texture = self.texture(name if "::" in name else f"{context.material.library}::{name}"
+                                       if context.material else name)
+            if texture is None:
+                return None
+            sizes = {"WIDTH": texture.width, "HEIGHT": texture.height, "LEVELS": texture.levels,
+                     "LAYERS": texture.layers, "ID": texture.glo}
+            return np.array([sizes[component]]) if component in sizes else None
+        return None
+
+    def barrier(self) -> None:
+        gl.barrier()
+
+
+def _rgba(texels: np.ndarray[Any, np.dtype[np.uint8]]) -> np.ndarray[Any, np.dtype[np.uint8]]:
+    """Any channel count to RGBA: grey is spread, missing alpha is 255."""
+    if texels.shape[2] == 4:
+        return texels
+    grey = np.repeat(texels[:, :, :1], 3, axis=2)
+    alpha = texels[:, :, 1:2] if texels.shape[2] == 2 else np.full_like(texels[:, :, :1], 255)
+    return np.concatenate([grey, alpha], axis=2)

@@ -1,0 +1,211 @@
+"""Where uniform values come from: ``valueof`` types, contexts and components (nau-format.md, 8, 9).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.model.passes import Pass
+from nau_py.scene.camera import CameraState
+from nau_py.scene.lights import LightState
+from nau_py.scene.material import RenderMaterial
+from nau_py.scene.mesh import F64
+from nau_py.scene.transforms import to_unit_cube
+from nau_py.scene.viewport import Rect
+from nau_py.scene.world import World
+
+if TYPE_CHECKING:
+    from nau_py.raster.resources import Resources
+
+Value = NDArray[Any]
+
+
+@dataclass(slots=True)
+class DrawContext:
+    """What uniform sources can refer to while one pass draws."""
+
+    world: World
+    resources: Resources
+    pass_: Pass
+    frame: int
+    timer_ms: float
+    camera: CameraState
+    rect: Rect
+    lights: list[LightState]
+    projection: F64
+    view: F64
+    target: str | None = None
+    material: RenderMaterial | None = None
+    model: F64 = field(default_factory=lambda: np.eye(4))
+    instances: int = 0
+
+
+def column_major(matrix: F64) -> Value:
+    """A (k, k) matrix as OpenGL stores it: flat, column after column."""
+    return np.ascontiguousarray(matrix.T, np.float32).reshape(-1)
+
+
+def _scalars(values: tuple[Any, ...]) -> Value:
+    return np.array([float(v) for v in values], np.float64)
+
+
+def camera_value(camera: CameraState, component: str, aspect: float) -> Value | None:
+    """A CAMERA attribute; matrices column-major."""
+    vectors: dict[str, tuple[F64, float]] = {
+        "POSITION": (camera.position, 1.0),
+        "VIEW": (camera.view, 0.0),
+        "UP": (camera.up, 0.0),
+        "LOOK_AT_POINT": (camera.position + camera.view, 1.0),
+        "NORMALIZED_VIEW": (camera.forward, 0.0),
+        "NORMALIZED_UP": (camera.true_up, 0.0),
+        "NORMALIZED_RIGHT": (camera.right, 0.0),
+    }
+    if component in vectors:
+        vector, w = vectors[component]
+        return np.append(vector, w)
+    if component in camera.values:
+        return np.array([camera.values[component]])
+    matrices: dict[str, Callable[[], F64]] = {
+        "VIEW_MATRIX": camera.view_matrix,
+        "PROJECTION_MATRIX": lambda: camera.projection_matrix(aspect),
+        "VIEW_INVERSE_MATRIX": lambda: np.linalg.inv(camera.view_matrix()),
+        "PROJECTION_INVERSE_MATRIX": lambda: np.linalg.inv(camera.projection_matrix(aspect)),
+        "PROJECTION_VIEW_MATRIX": lambda: camera.projection_matrix(aspect) @ camera.view_matrix(),
+        "TS05_PVM_MATRIX": lambda: to_unit_cube()
+        @ camera.projection_matrix(aspect)
+        @ camera.view_matrix(),
+    }
+    make = matrices.get(component)
+    return column_major(make()) if make else None
+
+
+def normal_matrix(view_model: F64) -> F64:
+    """Inverse transpose of the upper 3x3; only transposed twice where it is singular (9.12)."""
+    linear = view_model[:3, :3]
+    if abs(np.linalg.det(linear)) <= np.finfo(np.float32).eps:
+        return linear
+    return np.asarray(np.linalg.inv(linear).T)
+
+
+def _renderer(context: DrawContext, component: str) -> Value | None:
+    v, p, m = context.view, context.projection, context.model
+    matrices: dict[str, Callable[[], F64]] = {
+        "PROJECTION": lambda: p,
+        "VIEW": lambda: v,
+        "MODEL": lambda: m,
+        "TEXTURE": lambda: np.eye(4),
+        "VIEW_MODEL": lambda: v @ m,
+        "PROJECTION_VIEW": lambda: p @ v,
+        "PROJECTION_VIEW_MODEL": lambda: p @ v @ m,
+        "TS05_PVM": lambda: to_unit_cube() @ p @ v,
+        "NORMAL": lambda: normal_matrix(v @ m),
+    }
+    if component in matrices:
+        return column_major(matrices[component]())
+    numbers: dict[str, float] = {
+        "LIGHT_COUNT": len(context.lights),
+        "FRAME_COUNT": context.frame,
+        "TIMER": context.timer_ms,
+        "INSTANCE_COUNT": context.instances,
+    }
+    if component in numbers:
+        return np.array([numbers[component]])
+    if component == "TEXTURE_COUNT":
+        units = context.material.textures if context.material else {}
+        return np.array([sum(1 << unit for unit in units)])
+    return _default("RENDERER", component, context)
+
+
+def _default(type_: str, component: str, context: DrawContext) -> Value | None:
+    set_ = context.world.project.registry.get(type_)
+    attribute = set_.get(component) if set_ else None
+    if attribute is None or not attribute.default or isinstance(attribute.default[0], str):
+        return None
+    return _scalars(attribute.default)
+
+
+def _camera(context: DrawContext, name: str, component: str) -> Value | None:
+    if name == "CURRENT":
+        return camera_value(context.camera, component, context.rect.aspect)
+    camera = context.world.camera(name)
+    aspect = context.world.viewport(camera.viewport).aspect
+    return camera_value(camera, component, aspect)
+
+
+def _light(context: DrawContext, name: str, component: str, index: int) -> Value | None:
+    if name != "CURRENT":
+        light = context.world.light(name)
+    elif index < len(context.lights):
+        light = context.lights[index]
+    else:
+        light = context.world.light("__nauDefault")
+    if component == "ID":
+        return np.array([index])
+    values = light.values.get(component)
+    return None if values is None else _scalars(values)
+
+
+def _viewport(context: DrawContext, name: str, component: str) -> Value | None:
+    rect = context.rect if name == "CURRENT" else context.world.viewport(name)
+    values: dict[str, tuple[float, ...]] = {
+        "ORIGIN": (rect.x, rect.y),
+        "SIZE": (rect.width, rect.height),
+        "ABSOLUTE_ORIGIN": (rect.x, rect.y),
+        "ABSOLUTE_SIZE": (rect.width, rect.height),
+        "ABSOLUTE_RATIO": (rect.aspect,),
+        "CLEAR_COLOR": rect.clear,
+    }
+    found = values.get(component)
+    return _scalars(found) if found else _default("VIEWPORT", component, context)
+
+
+def _material(context: DrawContext, name: str) -> RenderMaterial | None:
+    if name == "CURRENT":
+        return context.material
+    library, _, material = name.partition("::")
+    return context.world.materials.get(library, material)
+
+
+def _pass(context: DrawContext, component: str) -> Value | None:
+    project = context.world.project
+    if component not in project.registry["PASS"]:
+        return None
+    values = project.value(context.pass_, "PASS", component)
+    return None if not values or isinstance(values[0], str) else _scalars(values)
+
+
+def resolve(context: DrawContext, type_: str, name: str, component: str, index: int) -> Value | None:
+    """The value of a source, flat; None where it has none, so that the uniform keeps its own.
+
+    float64 for scalars and vectors, column-major float32 for matrices.
+    """
+    if type_ == "RENDERER":
+        return _renderer(context, component)
+    if type_ == "CAMERA":
+        return _camera(context, name, component)
+    if type_ == "LIGHT":
+        return _light(context, name, component, index)
+    if type_ == "VIEWPORT":
+        return _viewport(context, name, component)
+    if type_ == "PASS":
+        return _pass(context, component)
+    if type_ == "COLOR":
+        material = _material(context, name)
+        colour = material.colours.get(component) if material else None
+        return _scalars(colour) if colour else _default(type_, component, context)
+    if type_ == "TEXTURE_BINDING":
+        material = _material(context, name)
+        bound = material is not None and index in material.textures
+        return np.array([index]) if bound and component == "UNIT" else None
+    if type_ == "IMAGE_TEXTURE":
+        return np.array([index]) if component == "UNIT" else None
+    if type_ in ("ARRAY_OF_TEXTURES_BINDING", "ARRAY_OF_IMAGE_TEXTURES"):
+        material = _material(context, name)
+        units = sorted(material.textures) if material else []
+        return np.array(units[index:]) if component == "SAMPLER_ARRAY" else None
+    return context.resources.value(type_, name, component, index, context)

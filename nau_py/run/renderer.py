@@ -1,0 +1,220 @@
+"""Running a pipeline: the session, the frame loop, and frames as arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.diagnostic import Diagnostic, Severity, error, listing, nearest
+from nau_py.errors import NauError, ProjectError
+from nau_py.graph.plan import Plan, Step, make_plan
+from nau_py.graph.resource import WINDOW
+from nau_py.lint import lint
+from nau_py.model.linked import Project
+from nau_py.model.pipeline import Pipeline
+from nau_py.passes import pass_classes
+from nau_py.passes.frame import (
+    FrameContext,
+    PassRecord,
+    Progress,
+    RunOptions,
+    Session,
+    no_progress,
+)
+from nau_py.run.report import machine_facts, make_report
+from nau_py.scene.viewport import Rect
+from nau_py.scene.world import World
+
+DEFAULT_TIME_STEP = 0.02
+"""Seconds of simulated time from one frame to the next."""
+
+
+@dataclass(slots=True)
+class Frame:
+    """One finished frame.
+
+    ``image``: the picture, uint8 (height, width, 4), row 0 at the top; float32 where a pipeline
+    without a window pass ends in a float target. ``targets``: every texture that a pass writes,
+    by qualified name, (height, width, channels), row 0 at the top, native dtype.
+    ``report``: what the frame cost; the schema is in docs/report.md.
+    """
+
+    index: int
+    image: NDArray[Any]
+    targets: dict[str, NDArray[Any]]
+    report: dict[str, Any]
+
+
+def choose_pipeline(project: Project, name: str | None) -> Pipeline:
+    """The pipeline called ``name``, or the default. Raises :class:`ProjectError`."""
+    found = project.pipeline(name) if name is not None else project.default_pipeline
+    if found is None:
+        known = [p.name or "" for p in project.pipelines]
+        wanted = f"pipeline '{name}'" if name is not None else "a pipeline to run"
+        where = project.file.pipelines.location if project.file.pipelines else (
+            project.file.location)
+        raise ProjectError(
+            error(
+                "R013",
+                where,
+                f"project '{project.name}' has no {wanted}; it has {listing(known)}"
+                f"{nearest(name or '', known)}",
+            )
+        )
+    return found
+
+
+class Renderer:
+    """Renders frames of one pipeline.
+
+    ``size`` overrides the window (width, height), pixels. ``keep_targets`` runs every pass that
+    writes something, so that all targets can be read. Raises
+    :class:`~nau_py.errors.ProjectError` for a project with lint errors,
+    :class:`~nau_py.errors.DeviceError` without OpenGL.
+    """
+
+    def __init__(
+        self,
+        project: Project,
+        pipeline: str | None = None,
+        *,
+        size: tuple[int, int] | None = None,
+        options: RunOptions | None = None,
+        time_step: float = DEFAULT_TIME_STEP,
+        keep_targets: bool = False,
+        progress: Progress = no_progress,
+    ) -> None:
+        self.project = project
+        self.diagnostics: list[Diagnostic] = lint(project)
+        errors = [d for d in self.diagnostics if d.severity is Severity.ERROR]
+        if errors:
+            raise ProjectError(errors)
+        self.pipeline = choose_pipeline(project, pipeline)
+        self.plan: Plan = make_plan(
+            project, self.pipeline, pass_classes(), everything=keep_targets
+        )
+        self.time_step = time_step
+        self._size = size or project.size
+        self._options = options or RunOptions()
+        self._progress = progress
+        self._session: Session | None = None
+        self._next = 0
+        self._setup_ms = 0.0
+
+    @property
+    def session(self) -> Session:
+        """World and GPU resources, made at the first frame."""
+        if self._session is None:
+            start = perf_counter()
+            self._session = self._open()
+            self._setup_ms = (perf_counter() - start) * 1000
+        return self._session
+
+    def _open(self) -> Session:
+        from nau_py.raster.device import device
+        from nau_py.raster.resources import Resources
+
+        world = World(self.project, self._size)
+        errors = [d for d in world.diagnostics if d.severity is Severity.ERROR]
+        if errors:
+            raise ProjectError(errors)
+        self.diagnostics += world.diagnostics
+        resources = Resources(device(), self.project, self._size)
+        return Session(
+            self.project,
+            self.pipeline.name or "",
+            world,
+            resources,
+            self._options,
+            progress=self._progress,
+        )
+
+    def render(self, frame: int = 0) -> Frame:
+        """Render up to and including ``frame`` (from 0) and return it.
+
+        Frames build on each other: going back starts again from frame 0.
+        Raises :class:`~nau_py.errors.NauError` for what fails while running.
+        """
+        if frame < 0:
+            raise ValueError(f"frame {frame}: frames are counted from 0")
+        if frame < self._next:
+            self._session, self._next = None, 0
+        records: list[PassRecord] = []
+        start = perf_counter()
+        while self._next <= frame:
+            start = perf_counter()
+            records = self._step(self._next)
+            self._next += 1
+        image, targets = self._capture()
+        ms = (perf_counter() - start) * 1000
+        report = make_report(
+            self.project, self.pipeline.name or "", machine_facts(self.session), self.diagnostics,
+            [(frame, ms, records)], self._setup_ms,
+        )
+        return Frame(frame, image, targets, report)
+
+    def _step(self, index: int) -> list[PassRecord]:
+        session = self.session
+        width, height = self._size
+        camera = session.world.camera(None)
+        timer = index * self.time_step * 1000.0
+        context = FrameContext(
+            session, index, timer, camera, Rect(0.0, 0.0, float(width), float(height))
+        )
+        return [self._run(step, context) for step in self.plan.steps]
+
+    def _run(self, step: Step, context: FrameContext) -> PassRecord:
+        record = PassRecord(step.name, step.pass_.pass_class)
+        reason = step.reason or _skipped_by_mode(step.pass_.run_mode, context.index)
+        if reason:
+            record.status, record.reason = "left_out", reason
+            return record
+        start = perf_counter()
+        try:
+            pass_classes()[step.pass_.pass_class].execute(step.pass_, context, record)
+            context.session.resources.device.ctx.finish()
+            context.session.resources.check()
+        except NauError:
+            raise
+        except (MemoryError, ArithmeticError, LookupError, TypeError, ValueError, OSError) as bug:
+            message = (
+                f"pass '{step.name}' of pipeline '{self.pipeline.name}' failed: "
+                f"{type(bug).__name__}: {bug}"
+            )
+            raise NauError(error("E001", step.pass_.location, message)) from bug
+        record.ms = (perf_counter() - start) * 1000
+        return record
+
+    def _capture(self) -> tuple[NDArray[Any], dict[str, NDArray[Any]]]:
+        resources = self.session.resources
+        targets: dict[str, NDArray[Any]] = {}
+        for step in self.plan.running:
+            for resource in step.access.writes:
+                if resource.kind != "texture" or resource.name in targets:
+                    continue
+                texture = resources.texture(resource.name)
+                if texture is not None and texture.layers == 1:
+                    targets[resource.name] = np.ascontiguousarray(texture.read()[::-1])
+        if self.plan.output == WINDOW:
+            window = next(iter(resources.window.textures.values()))
+            return np.ascontiguousarray(window.read()[::-1]), targets
+        image = targets.get(self.plan.output.name)
+        if image is None:
+            width, height = self._size
+            image = np.zeros((height, width, 4), np.uint8)
+        return image, targets
+
+
+def _skipped_by_mode(mode: str, index: int) -> str:
+    """Why run mode ``mode`` leaves the pass out of frame ``index``; empty where it runs."""
+    skipped = {
+        "SKIP_FIRST_FRAME": index == 0,
+        "RUN_ONCE": index > 0,
+        "RUN_EVEN": index % 2 == 1,
+        "RUN_ODD": index % 2 == 0,
+    }
+    return f"its mode is {mode} and this is frame {index}" if skipped.get(mode) else ""

@@ -1,0 +1,88 @@
+"""What a run reports: data with a published schema (docs/report.md)."""
+
+from __future__ import annotations
+
+import os
+import platform
+from typing import Any
+
+import numpy as np
+
+from nau_py.diagnostic import Diagnostic, Severity
+from nau_py.model.linked import Project
+from nau_py.passes.frame import PassRecord, Session
+
+SCHEMA = "https://nau-py.invalid/schema/report-1.json"
+
+
+def machine_facts(session: Session) -> dict[str, Any]:
+    """What timings depend on."""
+    device = session.resources.device
+    return {
+        "gl_renderer": device.renderer,
+        "gl_version": device.version,
+        "cpus": os.cpu_count() or 1,
+        "threads": session.options.threads or (os.cpu_count() or 1),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "system": platform.platform(),
+    }
+
+
+def pass_data(record: PassRecord) -> dict[str, Any]:
+    """One pass of one frame."""
+    data: dict[str, Any] = {
+        "name": record.name,
+        "class": record.pass_class,
+        "status": record.status,
+    }
+    if record.reason:
+        data["reason"] = record.reason
+    data |= {
+        "ms": round(record.ms, 3),
+        "pixels": record.pixels,
+        "rays": dict(record.rays),
+        "rays_avoided": record.avoided,
+    }
+    if record.est_error is not None:
+        data["est_error"] = record.est_error
+    if record.notes:
+        data["notes"] = list(record.notes)
+    return data
+
+
+def make_report(
+    project: Project,
+    pipeline: str,
+    machine: dict[str, Any],
+    diagnostics: list[Diagnostic],
+    frames: list[tuple[int, float, list[PassRecord]]],
+    setup_ms: float,
+) -> dict[str, Any]:
+    """The report of ``frames``: (index, milliseconds, records)."""
+    rays: dict[str, int] = {}
+    for _, _, records in frames:
+        for record in records:
+            for kind, count in record.rays.items():
+                rays[kind] = rays.get(kind, 0) + count
+    all_records = [record for _, _, records in frames for record in records]
+    warnings = [str(d) for d in diagnostics if d.severity is Severity.WARNING]
+    return {
+        "schema": SCHEMA,
+        "project": project.name,
+        "pipeline": pipeline,
+        "machine": machine,
+        "setup_ms": round(setup_ms, 3),
+        "frames": [
+            {"index": index, "ms": round(ms, 3), "passes": [pass_data(r) for r in records]}
+            for index, ms, records in frames
+        ],
+        "totals": {
+            "ms": round(sum(ms for _, ms, _ in frames), 3),
+            "rays": rays,
+            "rays_avoided": sum(r.avoided for r in all_records),
+        },
+        "effects": [],
+        "warnings": warnings,
+        "nonfinite": sum(r.nonfinite for r in all_records),
+    }

@@ -1,0 +1,138 @@
+"""Which material a pass draws each material name with (nau-format.md, 4.6 and 4.7)."""
+
+from __future__ import annotations
+
+from nau_py.model.library import DEFAULT_LIBRARY, qualified
+from nau_py.model.linked import Project
+from nau_py.model.maps import InjectedColor, InjectionMap, matches
+from nau_py.model.node import Configured
+from nau_py.model.passes import Pass
+from nau_py.scene.material import (
+    BufferBinding,
+    ImageBinding,
+    RenderMaterial,
+    TextureBinding,
+    from_library,
+    parts_of,
+)
+
+_FLAGS = {
+    "ambient": "AMBIENT",
+    "diffuse": "DIFFUSE",
+    "specular": "SPECULAR",
+    "emission": "EMISSION",
+    "shininess": "SHININESS",
+}
+
+
+class MaterialTable:
+    """Every material by (library, name): files' and models'. First definitions win."""
+
+    def __init__(self, project: Project) -> None:
+        self.project = project
+        self._materials: dict[tuple[str, str], RenderMaterial] = {}
+        for library in project.libraries:
+            for node in library.materials:
+                if library.name and node.name:
+                    key = (library.name, node.name)
+                    if key not in self._materials:
+                        self._materials[key] = from_library(project, library.name, node)
+
+    def add(self, material: RenderMaterial) -> None:
+        """Add a material of a model, unless the name is taken."""
+        self._materials.setdefault((material.library, material.name), material)
+
+    def get(self, library: str, name: str) -> RenderMaterial | None:
+        return self._materials.get((library, name))
+
+    def default_names(self) -> list[str]:
+        """Names in the default library, in order of definition."""
+        return [name for library, name in self._materials if library == DEFAULT_LIBRARY]
+
+    def for_pass(self, pass_: Pass, pipeline: str) -> PassMaterials:
+        return PassMaterials(self, pass_, pipeline)
+
+
+class PassMaterials:
+    """The materials of one pass: injection maps first, then material maps, which win."""
+
+    def __init__(self, table: MaterialTable, pass_: Pass, pipeline: str) -> None:
+        self._table = table
+        self._library = f"{pipeline}#{pass_.name}"
+        self._mapped: dict[str, RenderMaterial] = {}
+        self._everything: RenderMaterial | None = None
+        for injection in pass_.injectionMaps:
+            for name in table.default_names():
+                if injection.toMaterial and matches(injection.toMaterial, name):
+                    self._inject(name, injection)
+        for map_ in pass_.materialMaps:
+            target = table.get(map_.toLibrary or DEFAULT_LIBRARY, map_.toMaterial or "")
+            if target is None or not map_.fromMaterial:
+                continue
+            if map_.fromMaterial == "*":
+                self._everything = target
+                self._mapped.clear()
+            for name in table.default_names():
+                if matches(map_.fromMaterial, name):
+                    self._mapped[name] = target
+
+    def __getitem__(self, name: str) -> RenderMaterial | None:
+        """The material to draw geometry of material ``name`` with."""
+        found = self._mapped.get(name) or self._everything
+        return found or self._table.get(DEFAULT_LIBRARY, name)
+
+    def all(self) -> list[RenderMaterial]:
+        """The materials that maps have made, for look-ups by (library, name)."""
+        return list(self._mapped.values())
+
+    def _inject(self, name: str, injection: InjectionMap) -> None:
+        clone = self._mapped.get(name)
+        if clone is None:
+            original = self._table.get(DEFAULT_LIBRARY, name)
+            if original is None:
+                return
+            clone = self._mapped[name] = original.clone(self._library)
+        project = self._table.project
+        if injection.state is not None:
+            state = project.state(injection.state.fromLibrary or "", injection.state.name or "")
+            if state is not None:
+                clone.state = {k: project.value(state, "STATE", k) for k in state.settings}
+        if injection.shader is not None:
+            source = self._table.get(
+                injection.shader.fromLibrary or "", injection.shader.fromMaterial or ""
+            )
+            if source is not None:
+                clone.program, clone.uniforms = source.program, source.uniforms
+        for texture in injection.textures:
+            if texture.toUnit is not None:
+                clone.textures[texture.toUnit] = TextureBinding(
+                    qualified(texture.name or "", texture.fromLibrary or ""),
+                    parts_of(texture.settings),
+                )
+        for image in injection.imageTextures:
+            if image.toUnit is not None:
+                clone.images[image.toUnit] = ImageBinding(
+                    qualified(image.texture or "", image.fromLibrary or ""),
+                    parts_of(image.settings),
+                )
+        for bound in injection.buffers:
+            clone.buffers.append(self._buffer(bound, bound.name, bound.fromLibrary))
+        if injection.color is not None:
+            self._inject_color(clone, injection.color)
+
+    def _buffer(self, node: Configured, name: str | None, library: str | None) -> BufferBinding:
+        project = self._table.project
+        kind = str((node.get("TYPE") or ("SHADER_STORAGE",))[0])
+        point = int(project.value(node, "BUFFER_BINDING", "BINDING_POINT")[0])
+        return BufferBinding(qualified(name or "", library or ""), kind, max(point, 0))
+
+    def _inject_color(self, clone: RenderMaterial, color: InjectedColor) -> None:
+        source = self._table.get(color.fromLibrary or "", color.fromMaterial or "")
+        if source is None:
+            return
+        flags = [key for key in _FLAGS if getattr(color, key) is not None]
+        wanted = [_FLAGS[k] for k in flags if getattr(color, k) == "true"] if flags else list(
+            _FLAGS.values()
+        )
+        for name in wanted:
+            clone.colours[name] = source.colours[name]

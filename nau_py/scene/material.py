@@ -1,0 +1,179 @@
+"""Materials as passes draw them: everything resolved to names and values, nothing on the GPU."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from nau_py.model.library import DEFAULT_LIBRARY, qualified
+from nau_py.model.linked import Project
+from nau_py.model.material import Material, ValueOf
+from nau_py.model.node import Setting
+from nau_py.model.values import Scalar
+from nau_py.scene.model_material import DEFAULT_COLOURS, ModelMaterial
+
+Settings = dict[str, Setting]
+Colours = dict[str, tuple[float, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class TextureBinding:
+    """A texture on a unit: ``lib::name``, or the path of an image file of a model."""
+
+    texture: str
+    sampler: tuple[tuple[str, tuple[Scalar, ...]], ...] = ()
+    path: Path | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ImageBinding:
+    """A texture on an image unit."""
+
+    texture: str
+    settings: tuple[tuple[str, tuple[Scalar, ...]], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class BufferBinding:
+    """A buffer on a binding point."""
+
+    buffer: str
+    type: str
+    point: int
+
+
+@dataclass(frozen=True, slots=True)
+class UniformSource:
+    """A ``valueof``; ``library`` is where its named textures are looked up."""
+
+    uniform: str
+    type: str
+    context: str
+    component: str
+    id: int
+    block: str
+    library: str
+    node: ValueOf = field(compare=False, hash=False, repr=False)
+
+
+@dataclass(slots=True)
+class RenderMaterial:
+    """A material as a pass draws it. ``program`` is (library, shader name)."""
+
+    name: str
+    library: str
+    colours: Colours
+    textures: dict[int, TextureBinding] = field(default_factory=dict)
+    images: dict[int, ImageBinding] = field(default_factory=dict)
+    buffers: list[BufferBinding] = field(default_factory=list)
+    state: dict[str, tuple[Scalar, ...]] = field(default_factory=dict)
+    program: tuple[str, str] = (DEFAULT_LIBRARY, "dirLightDifAmbPix")
+    uniforms: tuple[UniformSource, ...] = ()
+
+    def clone(self, library: str) -> RenderMaterial:
+        """A copy for an injection map: sampler and image settings are lost, as in Nau (4.7)."""
+        return replace(
+            self,
+            library=library,
+            colours=dict(self.colours),
+            textures={u: replace(b, sampler=()) for u, b in self.textures.items()},
+            images={u: replace(b, settings=()) for u, b in self.images.items()},
+            buffers=list(self.buffers),
+            state=dict(self.state),
+        )
+
+    @property
+    def order(self) -> int:
+        """The drawing layer; negative is not drawn."""
+        return int(self.state.get("ORDER", (0,))[0])
+
+    @property
+    def enabled(self) -> bool:
+        return self.order >= 0
+
+
+def parts_of(settings: Settings) -> tuple[tuple[str, tuple[Scalar, ...]], ...]:
+    return tuple((name, setting.parts) for name, setting in settings.items())
+
+
+def uniform_sources(values: list[ValueOf], library: str) -> tuple[UniformSource, ...]:
+    """The sources of a material's uniforms; incomplete ones are left to lint."""
+    return tuple(
+        UniformSource(
+            v.uniform, v.type, v.context or "CURRENT", v.component, v.id or 0, v.block or "",
+            library, v,
+        )
+        for v in values
+        if v.uniform and v.type and v.component
+    )
+
+
+def default_material(project: Project, name: str) -> RenderMaterial:
+    """A clone of ``__nauDefault`` called ``name``, in the default library."""
+    found = project.material(DEFAULT_LIBRARY, "__nauDefault")
+    colours = dict(DEFAULT_COLOURS)
+    material = RenderMaterial(name, DEFAULT_LIBRARY, colours)
+    if found is not None and found[1].shader is not None:
+        material.uniforms = uniform_sources(found[1].shader.values, DEFAULT_LIBRARY)
+    return material
+
+
+def from_model(project: Project, source: ModelMaterial) -> RenderMaterial:
+    """The material that a model file brings."""
+    material = default_material(project, source.name)
+    material.colours |= source.colours
+    for unit, path in sorted(source.textures.items()):
+        material.textures[unit] = TextureBinding(str(path), path=path)
+    return material
+
+
+def from_library(project: Project, library: str, node: Material) -> RenderMaterial:
+    """The material that a library file defines (nau-format.md, 6.8)."""
+    material = default_material(project, node.name or "")
+    material.library = library
+    if node.color is not None:
+        for name in node.color.settings:
+            values = project.value(node.color, "COLOR", name)
+            material.colours[name] = tuple(float(v) for v in values)
+    for unit in node.textures:
+        if unit.name is not None and unit.UNIT is not None:
+            material.textures[unit.UNIT] = TextureBinding(
+                qualified(unit.name, library), parts_of(unit.settings)
+            )
+    for image in node.imageTextures:
+        if image.texture is not None and image.UNIT is not None:
+            material.images[image.UNIT] = ImageBinding(
+                qualified(image.texture, library), parts_of(image.settings)
+            )
+    for array in node.arraysOfTextures:
+        _bind_array(project, material, library, array.name, array.firstUnit)
+    buffers = project.names("buffer")
+    for bound in node.buffers:
+        name = qualified(bound.name or "", library)
+        if name not in buffers and bound.fromLibrary:
+            name = qualified(bound.name or "", bound.fromLibrary)
+        kind = str((bound.get("TYPE") or ("SHADER_STORAGE",))[0])
+        point = int(project.value(bound, "BUFFER_BINDING", "BINDING_POINT")[0])
+        material.buffers.append(BufferBinding(name, kind, max(point, 0)))
+    state_name = (node.state.name if node.state else None) or node.name or ""
+    state = project.state(library, state_name)
+    if state is not None:
+        material.state = {
+            name: project.value(state, "STATE", name) for name in state.settings
+        }
+    if node.shader is not None and node.shader.name:
+        material.program = (library, node.shader.name)
+        material.uniforms = uniform_sources(node.shader.values, library)
+    return material
+
+
+def _bind_array(
+    project: Project, material: RenderMaterial, library: str, name: str | None, first: int | None
+) -> None:
+    full = qualified(name or "", library)
+    array = project.names("texture array").get(full)
+    if array is None or first is None:
+        return
+    count = int(project.value(array, "ARRAY_OF_TEXTURES", "TEXTURE_COUNT")[0])  # type: ignore[arg-type]
+    for index in range(count):
+        material.textures[first + index] = TextureBinding(f"{full}_{index}")

@@ -1,0 +1,25 @@
+"""Materials as model files bring them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+Colour = tuple[float, float, float, float]
+
+DEFAULT_COLOURS: dict[str, tuple[float, ...]] = {
+    "AMBIENT": (0.2, 0.2, 0.2, 1.0),
+    "DIFFUSE": (0.8, 0.8, 0.8, 1.0),
+    "SPECULAR": (0.0, 0.0, 0.0, 1.0),
+    "EMISSION": (0.0, 0.0, 0.0, 1.0),
+    "SHININESS": (0.0,),
+}
+
+
+@dataclass(slots=True)
+class ModelMaterial:
+    """A material of a model file: COLOR attributes and texture files by unit."""
+
+    name: str
+    colours: dict[str, tuple[float, ...]] = field(default_factory=dict)
+    textures: dict[int, Path] = field(default_factory=dict)

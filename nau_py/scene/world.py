@@ -1,0 +1,73 @@
+"""Everything that a project draws, at a moment: scenes, materials, cameras, lights."""
+
+from __future__ import annotations
+
+from nau_py.diagnostic import Diagnostic
+from nau_py.model.linked import Project
+from nau_py.scene.build import SceneBuilder
+from nau_py.scene.camera import CameraState, camera_state
+from nau_py.scene.lights import LightState, light_state
+from nau_py.scene.mapping import MaterialTable
+from nau_py.scene.material import default_material, from_model
+from nau_py.scene.mesh import SceneObject
+from nau_py.scene.viewport import Rect, viewport_rect
+
+DEFAULT_NAME = "__nauDefault"
+
+
+class World:
+    """The world of a project. Scenes are loaded once, in file order; materials follow them.
+
+    ``diagnostics`` holds what model files had wrong.
+    """
+
+    def __init__(self, project: Project, window: tuple[int, int]) -> None:
+        self.project = project
+        self.window = window
+        self.materials = MaterialTable(project)
+        builder = SceneBuilder(project)
+        self.scenes: dict[str, list[SceneObject]] = {}
+        for node in project.assets.scenes:
+            if node.name:
+                self.scenes.setdefault(node.name, []).extend(builder.build(node))
+        for material in builder.materials:
+            self.materials.add(from_model(project, material))
+        for name in builder.new_materials:
+            self.materials.add(default_material(project, name))
+        self.diagnostics: list[Diagnostic] = builder.diagnostics
+        self._cameras: dict[str, CameraState] = {}
+        for camera in project.assets.cameras:
+            if camera.name and camera.name not in self._cameras:
+                self._cameras[camera.name] = camera_state(project, camera, camera.name)
+        self._cameras.setdefault(DEFAULT_NAME, camera_state(project, None, DEFAULT_NAME))
+        self._lights: dict[str, LightState] = {}
+        for light in project.assets.lights:
+            if light.name:
+                nodes = [other for other in project.assets.lights if other.name == light.name]
+                self._lights[light.name] = light_state(project, nodes, light.name)
+        self._lights.setdefault(DEFAULT_NAME, light_state(project, [], DEFAULT_NAME))
+
+    def objects(self, names: list[str]) -> list[SceneObject]:
+        """The objects of the named scenes, in that order."""
+        return [o for name in names for o in self.scenes.get(name, [])]
+
+    def camera(self, name: str | None) -> CameraState:
+        return self._cameras.get(name or DEFAULT_NAME, self._cameras[DEFAULT_NAME])
+
+    def add_camera(self, camera: CameraState) -> None:
+        """Add a camera that a pass makes (a depth map's light camera)."""
+        self._cameras[camera.name] = camera
+
+    def has_camera(self, name: str) -> bool:
+        return name in self._cameras
+
+    def light(self, name: str) -> LightState:
+        return self._lights.get(name, self._lights[DEFAULT_NAME])
+
+    def has_light(self, name: str) -> bool:
+        return name in self._lights
+
+    def viewport(self, name: str | None) -> Rect:
+        """The rectangle of a viewport in the window; the whole window for None."""
+        nodes = {v.name: v for v in self.project.assets.viewports}
+        return viewport_rect(self.project, nodes.get(name), self.window)
