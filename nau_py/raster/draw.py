@@ -6,8 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import moderngl
-
+from nau_py.raster import gl
 from nau_py.raster.gl import GL
 from nau_py.raster.programs import Program
 from nau_py.raster.resources import Resources
@@ -16,7 +15,7 @@ from nau_py.raster.state import apply_state
 from nau_py.scene.material import RenderMaterial
 from nau_py.scene.mesh import F64, Mesh, SceneObject
 
-_MODES = {"TRIANGLES": moderngl.TRIANGLES, "LINES": moderngl.LINES, "POINTS": moderngl.POINTS}
+_MODES = {"TRIANGLES": GL.GL_TRIANGLES, "LINES": GL.GL_LINES, "POINTS": GL.GL_POINTS}
 _ACCESS = {"READ_ONLY": GL.GL_READ_ONLY, "WRITE_ONLY": GL.GL_WRITE_ONLY,
            "READ_WRITE": GL.GL_READ_WRITE}
 _BUFFER_TARGETS = {"SHADER_STORAGE": GL.GL_SHADER_STORAGE_BUFFER, "UNIFORM": GL.GL_UNIFORM_BUFFER,
@@ -118,11 +117,13 @@ def draw(items: list[DrawItem], context: DrawContext) -> None:
             GL.glEnable(GL.GL_RASTERIZER_DISCARD)
         array = resources.geometry.vertex_array(item.mesh, program)
         gpu = resources.geometry.upload(item.mesh)
-        array.render(
+        gl.draw_elements(
+            program.mgl.glo,
+            array,
             _MODES[item.mesh.primitive],
-            vertices=gpu.count[item.group],
-            first=gpu.first[item.group],
-            instances=max(context.instances, 1),
+            gpu.count[item.group],
+            gpu.first[item.group],
+            max(context.instances, 1),
         )
         if discard:
             GL.glDisable(GL.GL_RASTERIZER_DISCARD)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from nau_py.raster import gl
 from nau_py.raster.programs import Program
 from nau_py.scene.mesh import Mesh
 
@@ -27,7 +28,7 @@ class Geometry:
     def __init__(self, ctx: Any) -> None:
         self._ctx = ctx
         self._meshes: dict[int, tuple[Mesh, GpuMesh]] = {}
-        self._arrays: dict[tuple[int, int], Any] = {}
+        self._arrays: dict[tuple[int, int], int] = {}
 
     def upload(self, mesh: Mesh) -> GpuMesh:
         """The GPU copy of ``mesh``; a mesh is never changed after it was loaded."""
@@ -45,13 +46,15 @@ class Geometry:
         self._meshes[id(mesh)] = (mesh, gpu)
         return gpu
 
-    def vertex_array(self, mesh: Mesh, program: Program) -> Any:
+    def vertex_array(self, mesh: Mesh, program: Program) -> int:
         """The vertex array that feeds ``mesh`` to ``program``, inputs matched by name."""
         key = (id(mesh), program.mgl.glo)
         if key not in self._arrays:
             gpu = self.upload(mesh)
-            content = [
-                (gpu.buffers[name], "4f", name) for name in program.inputs if name in gpu.buffers
+            inputs = [
+                (location, gpu.buffers[name].glo)
+                for name, location in program.inputs
+                if name in gpu.buffers
             ]
-            self._arrays[key] = self._ctx.vertex_array(program.mgl, content, gpu.indices)
+            self._arrays[key] = gl.create_vertex_array(inputs, gpu.indices.glo)
         return self._arrays[key]

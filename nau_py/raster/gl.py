@@ -5,6 +5,7 @@ It works on the context that :mod:`nau_py.raster.device` made current.
 
 from __future__ import annotations
 
+import ctypes
 import os
 
 os.environ.setdefault("PYOPENGL_PLATFORM", "egl")
@@ -125,6 +126,64 @@ def clear_texture(name: int, levels: int, layout: int, kind: int) -> None:
     """Fill every level with zero."""
     for level in range(levels):
         GL.glClearTexImage(name, level, layout, kind, None)
+
+
+def _active(program: int, interface: int, properties: list[int]) -> list[tuple[str, list[int]]]:
+    """Names and properties of a program interface's active resources."""
+    count = np.zeros(1, np.int32)
+    GL.glGetProgramInterfaceiv(program, interface, GL.GL_ACTIVE_RESOURCES, count)
+    wanted = np.array(properties, np.uint32)
+    found = []
+    for index in range(int(count[0])):
+        values = np.zeros(len(properties), np.int32)
+        length = np.zeros(1, np.int32)
+        GL.glGetProgramResourceiv(
+            program, interface, index, len(wanted), wanted, len(values), length, values
+        )
+        name = np.zeros(256, np.int8)
+        GL.glGetProgramResourceName(program, interface, index, 256, length, name.ctypes.data_as(
+            ctypes.POINTER(ctypes.c_char)))
+        text = name.tobytes().split(b"\0")[0].decode("ascii", "replace")
+        found.append((text, [int(v) for v in values]))
+    return found
+
+
+def active_uniforms(program: int) -> list[tuple[str, int, int, int]]:
+    """(name, location, type, array length) of the uniforms outside blocks.
+
+    moderngl hides a uniform that shares its name with a vertex attribute; this does not.
+    """
+    properties = [GL.GL_LOCATION, GL.GL_TYPE, GL.GL_ARRAY_SIZE]
+    listed = _active(program, GL.GL_UNIFORM, properties)
+    return [(n.removesuffix("[0]"), v[0], v[1], max(v[2], 1)) for n, v in listed if v[0] >= 0]
+
+
+def active_inputs(program: int) -> list[tuple[str, int]]:
+    """(name, location) of the vertex attributes, without the built-in ones."""
+    listed = _active(program, GL.GL_PROGRAM_INPUT, [GL.GL_LOCATION])
+    return [(name, v[0]) for name, v in listed if v[0] >= 0]
+
+
+def create_vertex_array(inputs: list[tuple[int, int]], indices: int) -> int:
+    """A vertex array of (location, buffer) pairs of float32 vec4, and an index buffer."""
+    made = np.zeros(1, np.uint32)
+    GL.glCreateVertexArrays(1, made)
+    array = int(made[0])
+    for slot, (location, buffer) in enumerate(inputs):
+        GL.glVertexArrayVertexBuffer(array, slot, buffer, 0, 16)
+        GL.glEnableVertexArrayAttrib(array, location)
+        GL.glVertexArrayAttribFormat(array, location, 4, GL.GL_FLOAT, GL.GL_FALSE, 0)
+        GL.glVertexArrayAttribBinding(array, location, slot)
+    GL.glVertexArrayElementBuffer(array, indices)
+    return array
+
+
+def draw_elements(program: int, array: int, mode: int, count: int, first: int, instances: int) -> None:
+    """Draw ``count`` indices from ``first``, ``instances`` times."""
+    GL.glUseProgram(program)
+    GL.glBindVertexArray(array)
+    offset = ctypes.c_void_p(first * 4)
+    GL.glDrawElementsInstanced(mode, count, GL.GL_UNSIGNED_INT, offset, instances)
 
 
 def barrier() -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -58,14 +58,13 @@ class Program:
     name: str
     mgl: Any
     uniforms: dict[str, UniformSlot]
-    inputs: list[str]
+    inputs: list[tuple[str, int]]
     has_fragment: bool
     is_compute: bool
-    blocks: dict[str, Any] = field(default_factory=dict)
 
     def set(self, name: str, value: np.ndarray[Any, Any]) -> None:
         """Upload a flat value, cut or zero-filled to the size that the shader declares."""
-        slot = self.uniforms.get(name) or self.uniforms.get(name.removesuffix("[0]"))
+        slot = self.uniforms.get(name.removesuffix("[0]"))
         if slot is None:
             return
         wanted = gl.components_of(slot.gl_type) * slot.count
@@ -142,18 +141,11 @@ def compile_program(ctx: Any, library: str, shader: Shader) -> Program:
     except KeyError as problem:
         message = f"{label}: #include {problem} is not supported"
         raise ShaderError(error("G001", shader.location, message)) from None
-    uniforms: dict[str, UniformSlot] = {}
-    inputs: list[str] = []
-    blocks: dict[str, Any] = {}
-    for name in made:
-        member = made[name]
-        if isinstance(member, moderngl.Uniform):
-            length = max(int(member.array_length), 1)
-            uniforms[name] = UniformSlot(int(member.location), int(member.gl_type), length)
-        elif isinstance(member, moderngl.Attribute) and not name.startswith("gl_"):
-            inputs.append(name)
-        elif isinstance(member, moderngl.UniformBlock):
-            blocks[name] = member
+    uniforms = {
+        name: UniformSlot(location, gl_type, length)
+        for name, location, gl_type, length in gl.active_uniforms(made.glo)
+    }
+    inputs = [] if "cs" in sources else gl.active_inputs(made.glo)
     return Program(
-        library, shader.name or "", made, uniforms, inputs, "ps" in sources, "cs" in sources, blocks
+        library, shader.name or "", made, uniforms, inputs, "ps" in sources, "cs" in sources
     )

@@ -134,11 +134,24 @@ class SceneBuilder:
                 error_at("M001", where, f"model '{path.name}{line}': {problem}")
             )
             return []
+        for material in materials:
+            self._existing_textures(material, path, where)
         self.materials += materials
         self.new_materials += [g.material for o in objects for g in o.mesh.groups]
         for item in objects:
             item.mesh = self._valid(item.mesh, path, where)
         return objects
+
+    def _existing_textures(self, material: ModelMaterial, path: Path, where: Location) -> None:
+        """Forget textures whose file is missing, as Nau does, with a warning each."""
+        for unit, texture in list(material.textures.items()):
+            if not texture.is_file():
+                del material.textures[unit]
+                message = (
+                    f"model '{path.name}': material '{material.name}' names the texture "
+                    f"'{texture}', which does not exist; it is drawn without"
+                )
+                self.diagnostics.append(warning("M004", where, message))
 
     def _valid(self, mesh: Mesh, path: Path, where: Location) -> Mesh:
         """``mesh`` without faces that have a non-finite vertex; each mesh is reported once."""

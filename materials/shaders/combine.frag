@@ -1,0 +1,16 @@
+#version 330
+
+// What was traced where the 4th component of the position says so, what was rasterised elsewhere.
+
+uniform sampler2D raster;
+uniform sampler2D position;
+uniform sampler2D traced;
+
+out vec4 outColor;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float mask = texelFetch(position, pixel, 0).w;
+    vec3 colour = mix(texelFetch(raster, pixel, 0).rgb, texelFetch(traced, pixel, 0).rgb, mask);
+    outColor = vec4(colour, 1.0);
+}

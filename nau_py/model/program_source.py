@@ -1,0 +1,30 @@
+"""Where the source of a program is, without running it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from nau_py.paths import resolve
+
+_DECORATIONS = ("raygen", "closesthit", "anyhit", "miss", "exception", "intersection")
+
+
+def strip_decoration(proc: str) -> str:
+    """``__closesthit__radiance`` without OptiX's decoration: ``radiance``."""
+    if proc.startswith("__"):
+        kind, _, rest = proc[2:].partition("__")
+        if kind in _DECORATIONS and rest:
+            return rest
+    return proc
+
+
+def stand_in(folder: Path, file: str) -> Path | None:
+    """The Python file behind ``file``: itself, or the sibling ``x.py`` of an ``x.ptx``.
+
+    None where there is neither.
+    """
+    found = resolve(folder, file)
+    if found.path.suffix.lower() != ".py":
+        sibling = resolve(folder, str(Path(file.replace("\\", "/")).with_suffix(".py")))
+        return sibling.best if sibling.exists else None
+    return found.best if found.exists else None

@@ -1,0 +1,1 @@
+"""Rays: acceleration structure, sampling, offsets, programs, the wavefront. No GL."""

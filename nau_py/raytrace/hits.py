@@ -1,0 +1,271 @@
+"""What programs are given: batches of hits, of missed rays, and the launch itself.
+
+Arrays are float32; the first axis is the batch. Positions and directions are in world space.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.raytrace.random import uniform
+from nau_py.raytrace.spawn import spawn, surface_point
+from nau_py.raytrace.texture import WHITE, RayTexture
+from nau_py.raytrace.vectors import F32, dot, normalize
+
+if TYPE_CHECKING:
+    from nau_py.raytrace.tracer import Tracer
+
+I32 = NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True)
+class RayMaterial:
+    """A material at a hit: colours (RGBA, or one number for SHININESS) and textures by unit."""
+
+    name: str
+    colours: dict[str, tuple[float, ...]]
+    textures: dict[int, RayTexture]
+    variables: dict[str, NDArray[Any]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class RayLight:
+    """A light of the pass: its attribute values by Nau's names."""
+
+    name: str
+    values: dict[str, tuple[Any, ...]]
+
+    def vector(self, name: str) -> F32:
+        """The first three components of an attribute, float32 (3,)."""
+        return np.array(self.values[name][:3], np.float32)
+
+
+@dataclass(slots=True)
+class Rays:
+    """A batch of rays. ``pixel`` uint32 and ``sample`` uint32 (n,) key the random numbers."""
+
+    tracer: Tracer
+    origin: F32
+    direction: F32
+    pixel: NDArray[np.uint32]
+    sample: NDArray[np.uint32]
+    depth: int
+    ray_type: str
+
+    def __len__(self) -> int:
+        return len(self.origin)
+
+    @property
+    def lights(self) -> list[RayLight]:
+        return self.tracer.lights
+
+    @property
+    def variables(self) -> dict[str, NDArray[Any]]:
+        """Values of the pass's global parameters, by name."""
+        return self.tracer.variables
+
+    @property
+    def clear_color(self) -> F32:
+        """The clear colour of the render target, float32 (4,)."""
+        return self.tracer.clear_color
+
+    def random(self, dimension: int) -> F32:
+        """Numbers in [0, 1), float32 (n,), that depend on pixel, sample, depth and dimension."""
+        return uniform(self.tracer.seed, self.pixel, self.sample, dimension + 1024 * self.depth)
+
+
+
+
+class Hits:
+    """A batch of hits on one material."""
+
+    def __init__(
+        self, rays: Rays, triangle: I32, u: F32, v: F32, t: F32, material: RayMaterial
+    ) -> None:
+        self.rays = rays
+        self.triangle, self.u, self.v, self.t = triangle, u, v, t
+        self.material = material
+        self._geometry = rays.tracer.geometry
+
+    def __len__(self) -> int:
+        return len(self.triangle)
+
+    @property
+    def depth(self) -> int:
+        """1 for primary rays, 2 for the rays that their hits send, and so on."""
+        return self.rays.depth
+
+    @property
+    def direction(self) -> F32:
+        """Unit directions of the arriving rays, (n, 3)."""
+        return self.rays.direction
+
+    @property
+    def lights(self) -> list[RayLight]:
+        return self.rays.lights
+
+    @property
+    def variables(self) -> dict[str, NDArray[Any]]:
+        """Values of the pass's global parameters and of the material's, by name."""
+        return self.rays.variables | self.material.variables
+
+    @cached_property
+    def _surface(self) -> tuple[F32, F32, F32]:
+        corners = self._geometry.triangles[self.triangle]
+        v0, v1, v2 = (self._geometry.vertices[corners[:, k]] for k in range(3))
+        return surface_point(v0, v1, v2, self.u, self.v)
+
+    @property
+    def position(self) -> F32:
+        """Hit points from barycentrics, (n, 3)."""
+        return self._surface[0]
+
+    @property
+    def face_normal(self) -> F32:
+        """Unit normals of the triangles, as wound, (n, 3)."""
+        return self._surface[1]
+
+    def _interpolate(self, values: F32 | None) -> F32 | None:
+        if values is None:
+            return None
+        corners = self._geometry.triangles[self.triangle]
+        u, v = self.u[:, None], self.v[:, None]
+        a, b, c = (values[corners[:, k]] for k in range(3))
+        return np.asarray(a * (1 - u - v) + b * u + c * v, np.float32)
+
+    @cached_property
+    def normal(self) -> F32:
+        """Unit shading normals, (n, 3): the face normal where a vertex has none."""
+        values = self._interpolate(self._geometry.normal)
+        if values is None:
+            return self.face_normal
+        smooth = values[:, :3]
+        missing = dot(smooth, smooth) < 1e-12
+        unit = normalize(np.where(missing[:, None], self.face_normal, smooth))
+        return np.asarray(unit, np.float32)
+
+    @cached_property
+    def facing_normal(self) -> F32:
+        """Shading normals turned towards where the ray came from, (n, 3)."""
+        away = dot(self.normal, self.direction) > 0
+        return np.where(away[:, None], -self.normal, self.normal)
+
+    @cached_property
+    def uv(self) -> F32:
+        """texCoord0, (n, 2); zero where the mesh has none."""
+        values = self._interpolate(self._geometry.uv)
+        return np.zeros((len(self), 2), np.float32) if values is None else values[:, :2]
+
+    @cached_property
+    def tangent(self) -> F32:
+        """Tangents, (n, 3); zero where the mesh has none."""
+        values = self._interpolate(self._geometry.tangent)
+        return np.zeros((len(self), 3), np.float32) if values is None else values[:, :3]
+
+    def color(self, name: str) -> F32:
+        """A colour of the material (DIFFUSE, SPECULAR, AMBIENT, EMISSION), float32 (3,)."""
+        return np.array(self.material.colours[name][:3], np.float32)
+
+    @property
+    def shininess(self) -> float:
+        return float(self.material.colours["SHININESS"][0])
+
+    def has_texture(self, unit: int = 0) -> bool:
+        return unit in self.material.textures
+
+    def texture(self, unit: int = 0) -> F32:
+        """Texture values, RGBA (n, 4); white where the material has no such texture."""
+        found = self.material.textures.get(unit)
+        return np.tile(WHITE, (len(self), 1)) if found is None else found.sample(self.uv)
+
+    def random(self, dimension: int) -> F32:
+        """See :meth:`Rays.random`."""
+        return self.rays.random(dimension)
+
+    def trace(
+        self,
+        ray_type: str,
+        direction: F32,
+        tmax: F32 | float | None = None,
+        kind: str | None = None,
+        initial: float = 0.0,
+    ) -> F32:
+        """Send rays of ``ray_type`` from the hits along ``direction`` (3,) or (n, 3).
+
+        Returns what they bring, RGBA (n, 4). ``kind`` is how the report counts them (default:
+        the ray type's name). Rays longer than MAX_DEPTH bring 0; a miss without a miss program
+        brings ``initial``.
+        """
+        wide = np.broadcast_to(np.asarray(direction, np.float32), (len(self), 3))
+        position, normal, bound = self._surface
+        unit = np.asarray(normalize(wide), np.float32)
+        origin = spawn(position, normal, bound, unit)
+        rays = Rays(
+            self.rays.tracer, origin, unit, self.rays.pixel, self.rays.sample, self.depth + 1,
+            ray_type,
+        )
+        limit = None if tmax is None else np.broadcast_to(np.asarray(tmax, np.float32), len(self))
+        return self.rays.tracer.trace(rays, limit, kind, initial)
+
+
+@dataclass(slots=True)
+class Launch:
+    """A batch of samples for a ray generation program.
+
+    ``x`` ``y``: pixel columns and rows, row 0 at the bottom; ``sample``: 0 … ``samples`` - 1.
+    """
+
+    tracer: Tracer
+    x: I32
+    y: I32
+    pixel: NDArray[np.uint32]
+    sample: NDArray[np.uint32]
+    samples: int
+    camera_rays: Callable[[F32, F32], tuple[F32, F32]]
+    """(x, y) on the image plane in pixels to origins and unit directions, float32 (n, 3)."""
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+    @property
+    def variables(self) -> dict[str, NDArray[Any]]:
+        return self.tracer.variables
+
+    @property
+    def ray_types(self) -> list[str]:
+        return self.tracer.ray_types
+
+    def input(self, name: str) -> NDArray[Any]:
+        """The values of an input buffer at the pixels, (n, channels)."""
+        return np.asarray(self.tracer.inputs[name][self.y, self.x])
+
+    def random(self, dimension: int) -> F32:
+        """Numbers in [0, 1), float32 (n,)."""
+        return uniform(self.tracer.seed, self.pixel, self.sample, dimension)
+
+    def trace(
+        self,
+        ray_type: str,
+        origin: F32,
+        direction: F32,
+        tmax: F32 | None = None,
+        kind: str | None = None,
+        initial: float = 0.0,
+    ) -> F32:
+        """Send primary rays; see :meth:`Hits.trace`. float32 (n, 3) arrays, unit directions."""
+        rays = Rays(
+            self.tracer,
+            np.asarray(origin, np.float32),
+            np.asarray(direction, np.float32),
+            self.pixel,
+            self.sample,
+            1,
+            ray_type,
+        )
+        return self.tracer.trace(rays, tmax, kind or "primary", initial)
