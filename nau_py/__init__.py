@@ -1,1 +1,69 @@
-"""nau_py."""
+"""nau_py: hybrid rendering from project files.
+
+>>> project = nau_py.load("projects/selective/project.xml")
+>>> for finding in nau_py.lint(project): ...
+>>> frame = nau_py.Renderer(project).render()
+>>> frame.image.shape
+(1024, 1024, 4)
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import nau_py.lint  # noqa: F401  bound to the package first, so that the function below keeps the name
+from nau_py.api import lint, load, plan
+from nau_py.diagnostic import Diagnostic, Severity
+from nau_py.errors import (
+    DeviceError,
+    NauError,
+    OutputError,
+    ProgramError,
+    ProjectError,
+    ShaderError,
+)
+from nau_py.model.linked import Project
+from nau_py.model.location import Location
+from nau_py.version import __version__
+
+if TYPE_CHECKING:
+    from nau_py.graph import Plan
+    from nau_py.passes.frame import RunOptions
+    from nau_py.run.renderer import Frame, Renderer
+
+__all__ = [
+    "DeviceError",
+    "Diagnostic",
+    "Frame",
+    "Location",
+    "NauError",
+    "OutputError",
+    "Plan",
+    "ProgramError",
+    "Project",
+    "ProjectError",
+    "Renderer",
+    "RunOptions",
+    "Severity",
+    "ShaderError",
+    "__version__",
+    "lint",
+    "load",
+    "plan",
+]
+
+_LAZY = {
+    "Frame": "nau_py.run.renderer",
+    "Plan": "nau_py.graph",
+    "Renderer": "nau_py.run.renderer",
+    "RunOptions": "nau_py.passes.frame",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Load what runs projects only when it is asked for, so that linting starts fast."""
+    if name in _LAZY:
+        from importlib import import_module
+
+        return getattr(import_module(_LAZY[name]), name)
+    raise AttributeError(f"module 'nau_py' has no attribute '{name}'")

@@ -133,9 +133,7 @@ class Binder:
         items.append(self.bind(child, cls))
         return True
 
-    def _wrapper(
-        self, child: Element, node: Node, name: str, marker: Items | Variants
-    ) -> bool:
+    def _wrapper(self, child: Element, node: Node, name: str, marker: Items | Variants) -> bool:
         items = getattr(node, name)
         if items or child.tag in node.partial:
             self._repeated(child, node)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from nau_py.formats.bind import Binder
-from nau_py.paths import resolve
 from nau_py.formats.settings import parse_setting
 from nau_py.formats.tolerant import XmlSyntaxError
 from nau_py.formats.upgrade import upgrade
@@ -21,6 +20,7 @@ from nau_py.model.node import Node
 from nau_py.model.problem import Problem, ProblemKind
 from nau_py.model.project import ProjectFile
 from nau_py.model.values import DataType
+from nau_py.paths import resolve
 
 BUILTIN_LIBRARY = Path(__file__).parent / "builtin" / "system.mlib"
 YAML_SUFFIXES = (".yaml", ".yml")
@@ -67,9 +67,7 @@ class Reader:
             else:
                 root = parse_xml(text, str(path), self.problems)
         except XmlSyntaxError as error:
-            self.problems.append(
-                Problem(ProblemKind.SYNTAX, error.location, detail=error.message)
-            )
+            self.problems.append(Problem(ProblemKind.SYNTAX, error.location, detail=error.message))
             return None
         except RecursionError:
             where = Location(str(path), 1, 1)
@@ -165,5 +163,3 @@ def is_library(path: Path) -> bool:
     if path.suffix.lower() in YAML_SUFFIXES:
         return path.name.lower().endswith(tuple(f".mlib{s}" for s in YAML_SUFFIXES))
     return path.suffix.lower() == ".mlib"
-
-

@@ -15,7 +15,7 @@ from nau_py.model.values import (
     to_scalar,
 )
 
-_KEYS = (("x", "r", "width"), ("y", "g", "height"), ("z", "b"), ("w", "a"))
+_KEYS: tuple[tuple[str, ...], ...] = (("x", "r", "width"), ("y", "g", "height"), ("z", "b"), ("w", "a"))
 
 
 def _spellings(attribute: Attribute) -> list[tuple[str, ...]]:
@@ -26,7 +26,7 @@ def _spellings(attribute: Attribute) -> list[tuple[str, ...]]:
     count = kind.components
     if count == 1:
         return [("value",)]
-    spellings = []
+    spellings: list[tuple[str, ...]] = []
     for index in range(count):
         keys = _KEYS[index]
         if count != 2:

@@ -115,7 +115,9 @@ class _Scanner:
     def name(self, what: str) -> str:
         match = _NAME.match(self.text, self.pos)
         if match is None:
-            raise self.fail(self.pos, f"{what} expected, found {self.text[self.pos : self.pos + 12]!r}")
+            raise self.fail(
+                self.pos, f"{what} expected, found {self.text[self.pos : self.pos + 12]!r}"
+            )
         self.pos = match.end()
         return match[0]
 
@@ -149,7 +151,9 @@ class _Scanner:
                 self.open.append((name, tag.location))
                 return False
             if self.pos >= len(self.text):
-                raise XmlSyntaxError(tag.location, f"start tag <{name} is not closed: no '>' follows")
+                raise XmlSyntaxError(
+                    tag.location, f"start tag <{name} is not closed: no '>' follows"
+                )
             self.attribute(name, tag)
 
     def attribute(self, element: str, tag: StartTag) -> None:
@@ -182,7 +186,8 @@ class _Scanner:
                 raise self.fail(start, f"attribute '{name}' of <{element}> has no value")
             if '"' in match[0] or "'" in match[0]:
                 raise self.fail(
-                    start, f"value of attribute '{name}' of <{element}> has a quote inside: {match[0]}"
+                    start,
+                    f"value of attribute '{name}' of <{element}> has a quote inside: {match[0]}",
                 )
             end = self.pos = match.end()
         tag.attributes[name] = self.at(start)

@@ -57,7 +57,8 @@ def format_xml(root: Element) -> str:
 def _format(element: Element, depth: int, lines: list[str]) -> None:
     pad = _INDENT * depth
     attributes = [
-        f"{name}={quoteattr(value, {chr(10): '&#10;'})}" for name, value in element.attributes.items()
+        f"{name}={quoteattr(value, {chr(10): '&#10;'})}"
+        for name, value in element.attributes.items()
     ]
     end = ">" if element.children else " />"
     line = pad + " ".join([f"<{element.tag}", *attributes]) + end

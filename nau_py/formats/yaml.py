@@ -79,7 +79,9 @@ class YamlReader:
                 element.children = self._list(data, only[0])
                 return element
         if data is not None:
-            first = next((file_key(n, m) for n, m in markers.items() if isinstance(m, Attr)), "name")
+            first = next(
+                (file_key(n, m) for n, m in markers.items() if isinstance(m, Attr)), "name"
+            )
             element.attributes[first] = _text(data)
             element.attribute_locations[first] = where
         return element
@@ -121,9 +123,7 @@ class YamlReader:
         else:
             element.children += self._unknown(key, value, where)
 
-    def _settings(
-        self, key: str, value: object, keys: list[str], where: Location
-    ) -> list[Element]:
+    def _settings(self, key: str, value: object, keys: list[str], where: Location) -> list[Element]:
         if isinstance(value, CommentedSeq) and value and isinstance(value[0], CommentedMap):
             return [e for item in value for e in self._settings(key, item, keys, where)]
         element = Element(key, location=where)
@@ -251,7 +251,11 @@ def _add_child(
     data: CommentedMap, child: Element, markers: dict[str, Marker], registry: Registry
 ) -> None:
     for name, marker in markers.items():
-        if isinstance(marker, Child) and child.tag == (marker.tag or name) and child.tag not in data:
+        if (
+            isinstance(marker, Child)
+            and child.tag == (marker.tag or name)
+            and child.tag not in data
+        ):
             data[child.tag] = to_yaml(child, marker.cls, registry)
             return
         if isinstance(marker, Items | Variants):
@@ -275,9 +279,7 @@ def _add_child(
     data.setdefault(child.tag, CommentedSeq()).append(_unknown_data(child))
 
 
-def _add_setting(
-    data: CommentedMap, child: Element, keys: list[str], data_type: DataType
-) -> None:
+def _add_setting(data: CommentedMap, child: Element, keys: list[str], data_type: DataType) -> None:
     plain = list(child.attributes) == keys[: len(child.attributes)] and child.attributes
     values = [_native(text, data_type) for text in child.attributes.values()]
     if child.tag in data or not plain:

@@ -15,12 +15,14 @@ from nau_py.model.passes import Pass
 class Access:
     """What one pass reads and writes, in a stable order.
 
-    ``replaces`` holds the written resources of which nothing earlier remains.
+    ``replaces`` holds the written resources of which nothing earlier remains; ``keeps`` those read
+    ones that are drawn over without being cleared, rather than sampled.
     """
 
     reads: list[Resource] = field(default_factory=list)
     writes: list[Resource] = field(default_factory=list)
     replaces: list[Resource] = field(default_factory=list)
+    keeps: list[Resource] = field(default_factory=list)
 
     def add_read(self, resource: Resource) -> None:
         if resource not in self.reads:

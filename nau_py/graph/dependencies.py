@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Literal
 
-import networkx as nx
-
 from nau_py.graph.contract import Access, Contracts
 from nau_py.graph.resource import Resource
 from nau_py.model.linked import Project
@@ -41,6 +39,8 @@ class PassGraph:
 
     def order(self) -> list[int]:
         """Indices in execution order: file order, made stable under the edges."""
+        import networkx as nx  # slow to import, and lint often ends before it is needed
+
         graph = nx.DiGraph()
         graph.add_nodes_from(range(len(self.passes)))
         graph.add_edges_from((e.earlier, e.later) for e in self.edges)

@@ -105,7 +105,7 @@ def to_svg(plan: Plan) -> str:
         colour = "#dbeafe" if step.run else "#f1f1f1"
         dash = "" if step.run else ' stroke-dasharray="5 4"'
         box = f'<rect x="{_PITCH}" y="{middle - 18}" width="{_BOX}" height="36" rx="5"'
-        parts.append(f'<g><title>{escape(step.reason or "runs")}</title>{box}')
+        parts.append(f"<g><title>{escape(step.reason or 'runs')}</title>{box}")
         parts.append(f'fill="{colour}" stroke="#334"{dash}/>')
         parts.append(_text(_PITCH + 10, middle - 2, step.name, 'font-weight="bold"'))
         label = step.pass_.pass_class + ("" if step.run else " · left out")
@@ -119,8 +119,11 @@ def to_svg(plan: Plan) -> str:
                     f'<rect x="{x + 10}" y="{at - 13}" width="{_BOX - 10}" height="26" rx="13" '
                     f'fill="{fill}" stroke="#667"/>' + _text(x + 22, at + 4, resource.name)
                 )
-                ends = (x + _BOX, at, _PITCH, middle) if side == 0 else (
-                    _PITCH + _BOX, middle, x + 10, at)
+                ends = (
+                    (x + _BOX, at, _PITCH, middle)
+                    if side == 0
+                    else (_PITCH + _BOX, middle, x + 10, at)
+                )
                 parts.append(
                     f'<line x1="{ends[0]}" y1="{ends[1]}" x2="{ends[2]}" y2="{ends[3]}" '
                     'stroke="#667" marker-end="url(#a)"/>'

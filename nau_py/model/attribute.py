@@ -69,7 +69,9 @@ def flag(name: str, default: bool, doc: str = "", readonly: bool = False) -> Att
     return Attribute(name, DataType.BOOL, (default,), doc, readonly)
 
 
-def choice(name: str, default: str, values: str, doc: str = "", readonly: bool = False) -> Attribute:
+def choice(
+    name: str, default: str, values: str, doc: str = "", readonly: bool = False
+) -> Attribute:
     return Attribute(name, DataType.ENUM, (default,), doc, readonly, tuple(values.split()))
 
 

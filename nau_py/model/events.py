@@ -34,8 +34,8 @@ class Sensor(Node):
     ] = None
     enabled: Annotated[SensorValue | None, Child(SensorValue)] = None
     loop: Annotated[SensorValue | None, Child(SensorValue)] = None
-    secondsToStart: Annotated[SensorValue | None, Child(SensorValue)] = None  # noqa: N815
-    cycleInterval: Annotated[SensorValue | None, Child(SensorValue)] = None  # noqa: N815
+    secondsToStart: Annotated[SensorValue | None, Child(SensorValue)] = None
+    cycleInterval: Annotated[SensorValue | None, Child(SensorValue)] = None
     center: Annotated[SensorVector | None, Child(SensorVector)] = None
     size: Annotated[SensorVector | None, Child(SensorVector)] = None
 
@@ -57,9 +57,9 @@ class Interpolator(Node):
     class_: Annotated[
         str | None, Attr(name="class", required=True, values=("PositionInterpolator",), doc="Kind.")
     ] = None
-    keyFrames: Annotated[  # noqa: N815
-        list[KeyFrame], Items(KeyFrame, "keyFrame", "keyFrames")
-    ] = Field(default_factory=list)
+    keyFrames: Annotated[list[KeyFrame], Items(KeyFrame, "keyFrame", "keyFrames")] = Field(
+        default_factory=list
+    )
 
 
 class Route(Node):
@@ -68,7 +68,5 @@ class Route(Node):
     name: Annotated[str | None, Attr(doc="Route name.", required=True)] = None
     sender: Annotated[str | None, Attr(doc="Sender.", required=True)] = None
     receiver: Annotated[str | None, Attr(doc="Receiver.", required=True)] = None
-    eventIn: Annotated[str | None, Attr(doc="Event sent on.", required=True)] = None  # noqa: N815
-    eventOut: Annotated[  # noqa: N815
-        str | None, Attr(doc="Event waited for.", required=True)
-    ] = None
+    eventIn: Annotated[str | None, Attr(doc="Event sent on.", required=True)] = None
+    eventOut: Annotated[str | None, Attr(doc="Event waited for.", required=True)] = None

@@ -16,7 +16,7 @@ class Atomic(Node):
     semantics: Annotated[str | None, Attr(doc="Label.", required=True)] = None
     offset: Annotated[int | None, Attr(DataType.INT, "Byte offset.", required=True)] = None
     buffer: Annotated[str | None, Attr(doc="Buffer.", required=True)] = None
-    fromLibrary: Annotated[str | None, Attr(doc="Library.")] = None  # noqa: N815
+    fromLibrary: Annotated[str | None, Attr(doc="Library.")] = None
 
 
 class PipelineList(Node):
@@ -24,16 +24,14 @@ class PipelineList(Node):
 
     label: Annotated[str | None, Attr(doc="Label.", required=True)] = None
     script: Annotated[str | None, Attr(doc="Lua function.")] = None
-    scriptFile: Annotated[str | None, Attr(doc="Lua file.", file="script")] = None  # noqa: N815
+    scriptFile: Annotated[str | None, Attr(doc="Lua file.", file="script")] = None
 
 
 class Variable(Node):
     """A value that the user can change."""
 
     label: Annotated[str | None, Attr(doc="Label.", required=True)] = None
-    type: Annotated[
-        str | None, Attr(doc="Object type.", required=True, ref="object type")
-    ] = None
+    type: Annotated[str | None, Attr(doc="Object type.", required=True, ref="object type")] = None
     context: Annotated[str | None, Attr(doc="Object name.", required=True)] = None
     component: Annotated[str | None, Attr(doc="Attribute of the type.", required=True)] = None
     id: Annotated[int | None, Attr(DataType.INT, "Index.")] = None
@@ -41,7 +39,7 @@ class Variable(Node):
     def_: Annotated[str | None, Attr(name="def", doc="`min= max= step=` text.")] = None
     strings: Annotated[str | None, Attr(doc="Comma list for an INT.")] = None
     script: Annotated[str | None, Attr(doc="Lua function.")] = None
-    scriptFile: Annotated[str | None, Attr(doc="Lua file.", file="script")] = None  # noqa: N815
+    scriptFile: Annotated[str | None, Attr(doc="Lua file.", file="script")] = None
 
 
 class Window(Node):

@@ -22,7 +22,7 @@ class MaterialLibrary(Node):
     """One library file. Several files may share a name; they are then one library."""
 
     name: Annotated[str | None, Attr(doc="Library name.", required=True)] = None
-    renderTargets: Annotated[  # noqa: N815
+    renderTargets: Annotated[
         list[RenderTarget], Items(RenderTarget, "renderTarget", "renderTargets")
     ] = Field(default_factory=list)
     textures: Annotated[
@@ -35,7 +35,7 @@ class MaterialLibrary(Node):
     buffers: Annotated[list[Buffer], Items(Buffer, "buffer", "buffers")] = Field(
         default_factory=list
     )
-    arraysOfTextures: Annotated[  # noqa: N815
+    arraysOfTextures: Annotated[
         list[ArrayOfTextures], Items(ArrayOfTextures, "arrayOfTextures", "arraysOfTextures")
     ] = Field(default_factory=list)
     materials: Annotated[list[Material], Items(Material, "material", "materials")] = Field(

@@ -14,13 +14,13 @@ from nau_py.model.values import DataType
 class MaterialMap(Node):
     """Draw what has material ``fromMaterial`` with another one."""
 
-    fromMaterial: Annotated[  # noqa: N815
+    fromMaterial: Annotated[
         str | None, Attr(doc="Name, or prefix and a final `*`.", required=True)
     ] = None
-    toLibrary: Annotated[  # noqa: N815
+    toLibrary: Annotated[
         str | None, Attr(doc="Library; default the default library.", ref="library")
     ] = None
-    toMaterial: Annotated[  # noqa: N815
+    toMaterial: Annotated[
         str | None,
         Attr(doc="Material to draw with.", required=True, ref="material", library="toLibrary"),
     ] = None
@@ -35,25 +35,25 @@ class InjectedState(Node):
     name: Annotated[
         str | None, Attr(doc="State.", required=True, ref="state", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None
 
 
 class InjectedShader(Node):
     """A shader with its uniform sources, taken from a material."""
 
-    fromMaterial: Annotated[  # noqa: N815
+    fromMaterial: Annotated[
         str | None, Attr(doc="Material.", required=True, ref="material", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None
 
 
 class InjectedColor(Node):
     """Colours taken from a material: the flagged ones, or all without a flag."""
 
-    fromMaterial: Annotated[  # noqa: N815
+    fromMaterial: Annotated[
         str | None, Attr(doc="Material.", required=True, ref="material", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None
     ambient: Annotated[str | None, Attr(doc="`true` copies it.")] = None
     diffuse: Annotated[str | None, Attr(doc="`true` copies it.")] = None
     specular: Annotated[str | None, Attr(doc="`true` copies it.")] = None
@@ -67,8 +67,8 @@ class InjectedTexture(Configured):
     name: Annotated[
         str | None, Attr(doc="Texture.", required=True, ref="texture", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
-    toUnit: Annotated[int | None, Attr(DataType.INT, "Unit.", required=True)] = None  # noqa: N815
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None
+    toUnit: Annotated[int | None, Attr(DataType.INT, "Unit.", required=True)] = None
     settings: Annotated[NodeSettings, Settings("TEXTURE_SAMPLER")] = Field(default_factory=dict)
 
 
@@ -78,8 +78,8 @@ class InjectedImage(Configured):
     texture: Annotated[
         str | None, Attr(doc="Texture.", required=True, ref="texture", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
-    toUnit: Annotated[int | None, Attr(DataType.INT, "Unit.", required=True)] = None  # noqa: N815
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None
+    toUnit: Annotated[int | None, Attr(DataType.INT, "Unit.", required=True)] = None
     settings: Annotated[NodeSettings, Settings("IMAGE_TEXTURE")] = Field(default_factory=dict)
 
 
@@ -89,14 +89,14 @@ class InjectedBuffer(Configured):
     name: Annotated[
         str | None, Attr(doc="Buffer.", required=True, ref="buffer", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None  # noqa: N815
+    fromLibrary: Annotated[str | None, _FROM_LIBRARY] = None
     settings: Annotated[NodeSettings, Settings("BUFFER_BINDING")] = Field(default_factory=dict)
 
 
 class InjectedImageArray(Configured):
     """An array of image textures to inject."""
 
-    textureArray: Annotated[  # noqa: N815
+    textureArray: Annotated[
         str | None, Attr(doc="`lib::array`.", required=True, ref="texture array")
     ] = None
     FIRST_UNIT: Annotated[int | None, Attr(DataType.INT, "First unit.", required=True)] = None
@@ -108,22 +108,22 @@ class InjectedImageArray(Configured):
 class InjectionMap(Node):
     """Change parts of every material that matches ``toMaterial``, for this pass."""
 
-    toMaterial: Annotated[  # noqa: N815
+    toMaterial: Annotated[
         str | None, Attr(doc="Name, or prefix and a final `*`.", required=True)
     ] = None
     state: Annotated[InjectedState | None, Child(InjectedState)] = None
     shader: Annotated[InjectedShader | None, Child(InjectedShader)] = None
     color: Annotated[InjectedColor | None, Child(InjectedColor)] = None
-    textures: Annotated[
-        list[InjectedTexture], Items(InjectedTexture, "texture", "textures")
-    ] = Field(default_factory=list)
-    imageTextures: Annotated[  # noqa: N815
+    textures: Annotated[list[InjectedTexture], Items(InjectedTexture, "texture", "textures")] = (
+        Field(default_factory=list)
+    )
+    imageTextures: Annotated[
         list[InjectedImage], Items(InjectedImage, "imageTexture", "imageTextures")
     ] = Field(default_factory=list)
     buffers: Annotated[list[InjectedBuffer], Items(InjectedBuffer, "buffer", "buffers")] = Field(
         default_factory=list
     )
-    arraysOfImageTexture: Annotated[  # noqa: N815
+    arraysOfImageTexture: Annotated[
         list[InjectedImageArray],
         Items(InjectedImageArray, "arrayOfImageTexture", "arraysOfImageTexture"),
     ] = Field(default_factory=list)

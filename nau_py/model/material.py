@@ -41,7 +41,7 @@ class ImageUnits(Configured):
     """An array of textures bound to consecutive image units."""
 
     FIRST_UNIT: Annotated[int | None, Attr(DataType.INT, "First unit.", required=True)] = None
-    textureArray: Annotated[  # noqa: N815
+    textureArray: Annotated[
         str | None, Attr(doc="Array of textures.", required=True, ref="texture array")
     ] = None
     settings: Annotated[NodeSettings, Settings("ARRAY_OF_IMAGE_TEXTURES")] = Field(
@@ -55,9 +55,7 @@ class TextureUnits(Configured):
     name: Annotated[
         str | None, Attr(doc="Array of textures.", required=True, ref="texture array")
     ] = None
-    firstUnit: Annotated[  # noqa: N815
-        int | None, Attr(DataType.INT, "First unit.", required=True)
-    ] = None
+    firstUnit: Annotated[int | None, Attr(DataType.INT, "First unit.", required=True)] = None
     settings: Annotated[NodeSettings, Settings("TEXTURE_SAMPLER")] = Field(default_factory=dict)
 
 
@@ -67,7 +65,7 @@ class BufferUnit(Configured):
     name: Annotated[
         str | None, Attr(doc="Buffer, own library or `lib::name`.", required=True, ref="buffer")
     ] = None
-    fromLibrary: Annotated[  # noqa: N815
+    fromLibrary: Annotated[
         str | None, Attr(doc="Looked in only where the own library has no such buffer.")
     ] = None
     settings: Annotated[NodeSettings, Settings("BUFFER_BINDING")] = Field(default_factory=dict)
@@ -83,9 +81,7 @@ class ValueOf(Node):
     """Where the value of a uniform comes from."""
 
     uniform: Annotated[str | None, Attr(doc="GLSL name.", required=True)] = None
-    type: Annotated[
-        str | None, Attr(doc="Object type.", required=True, ref="object type")
-    ] = None
+    type: Annotated[str | None, Attr(doc="Object type.", required=True, ref="object type")] = None
     context: Annotated[str | None, Attr(doc="Object name; default CURRENT.")] = None
     component: Annotated[str | None, Attr(doc="Attribute of the type.", required=True)] = None
     id: Annotated[int | None, Attr(DataType.INT, "Unit, binding point or light index.")] = None
@@ -109,13 +105,13 @@ class Material(Node):
     textures: Annotated[list[TextureUnit], Items(TextureUnit, "texture", "textures")] = Field(
         default_factory=list
     )
-    imageTextures: Annotated[  # noqa: N815
-        list[ImageUnit], Items(ImageUnit, "imageTexture", "imageTextures")
-    ] = Field(default_factory=list)
-    arraysOfImageTexture: Annotated[  # noqa: N815
+    imageTextures: Annotated[list[ImageUnit], Items(ImageUnit, "imageTexture", "imageTextures")] = (
+        Field(default_factory=list)
+    )
+    arraysOfImageTexture: Annotated[
         list[ImageUnits], Items(ImageUnits, "arrayOfImageTexture", "arraysOfImageTexture")
     ] = Field(default_factory=list)
-    arraysOfTextures: Annotated[  # noqa: N815
+    arraysOfTextures: Annotated[
         list[TextureUnits], Items(TextureUnits, "arrayOfTextures", "arraysOfTextures")
     ] = Field(default_factory=list)
     buffers: Annotated[list[BufferUnit], Items(BufferUnit, "buffer", "buffers")] = Field(

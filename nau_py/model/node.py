@@ -105,7 +105,7 @@ class Node(BaseModel):
     which only the left-over parts are kept.
     """
 
-    model_config = ConfigDict(extra="forbid", arbitrary_types_allowed=True)
+    model_config = ConfigDict(extra="forbid", arbitrary_types_allowed=True, defer_build=True)
 
     location: Location = Field(default=NOWHERE, repr=False)
     attribute_locations: dict[str, Location] = Field(default_factory=dict, repr=False)

@@ -35,7 +35,7 @@ class QuadTexture(Node):
     name: Annotated[
         str | None, Attr(doc="Texture.", required=True, ref="texture", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None  # noqa: N815
+    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None
 
 
 class MaterialReference(Node):
@@ -44,9 +44,7 @@ class MaterialReference(Node):
     name: Annotated[
         str | None, Attr(doc="Material.", required=True, ref="material", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[  # noqa: N815
-        str | None, Attr(doc="Library.", required=True, ref="library")
-    ] = None
+    fromLibrary: Annotated[str | None, Attr(doc="Library.", required=True, ref="library")] = None
 
 
 class QuadPass(Pass):
@@ -71,15 +69,15 @@ def _offset(axis: str) -> Attr:
 class ComputeMaterial(MaterialReference):
     """A compute material and the number of work groups, given or read from a buffer."""
 
-    dimX: Annotated[int | str | None, _dimension("x")] = None  # noqa: N815
-    dimY: Annotated[int | str | None, _dimension("y")] = None  # noqa: N815
-    dimZ: Annotated[int | str | None, _dimension("z")] = None  # noqa: N815
-    bufferX: Annotated[str | None, _source("x")] = None  # noqa: N815
-    bufferY: Annotated[str | None, _source("y")] = None  # noqa: N815
-    bufferZ: Annotated[str | None, _source("z")] = None  # noqa: N815
-    offsetX: Annotated[int | None, _offset("x")] = None  # noqa: N815
-    offsetY: Annotated[int | None, _offset("y")] = None  # noqa: N815
-    offsetZ: Annotated[int | None, _offset("z")] = None  # noqa: N815
+    dimX: Annotated[int | str | None, _dimension("x")] = None
+    dimY: Annotated[int | str | None, _dimension("y")] = None
+    dimZ: Annotated[int | str | None, _dimension("z")] = None
+    bufferX: Annotated[str | None, _source("x")] = None
+    bufferY: Annotated[str | None, _source("y")] = None
+    bufferZ: Annotated[str | None, _source("z")] = None
+    offsetX: Annotated[int | None, _offset("x")] = None
+    offsetY: Annotated[int | None, _offset("y")] = None
+    offsetZ: Annotated[int | None, _offset("z")] = None
 
 
 class ComputePass(Pass):
@@ -111,8 +109,8 @@ class RayBuffer(Node):
     buffer: Annotated[
         str | None, Attr(doc="Buffer.", required=True, ref="buffer", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None  # noqa: N815
-    queryType: Annotated[  # noqa: N815
+    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None
+    queryType: Annotated[
         str | None, Attr(doc="Kind of query (rays only).", values=("ANY", "CLOSEST"))
     ] = None
 
@@ -131,7 +129,7 @@ class RayQueryPass(Pass):
     scene: Annotated[SceneReference | None, Child(SceneReference)] = None
     rays: Annotated[RayBuffer | None, Child(RayBuffer)] = None
     hits: Annotated[RayBuffer | None, Child(RayBuffer)] = None
-    rayCount: Annotated[RayCount | None, Child(RayCount)] = None  # noqa: N815
+    rayCount: Annotated[RayCount | None, Child(RayCount)] = None
 
 
 PASS_CLASSES: dict[str, type[Pass]] = {

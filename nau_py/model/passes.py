@@ -40,7 +40,7 @@ class ProcessTexture(Configured):
     name: Annotated[
         str | None, Attr(doc="Texture.", required=True, ref="texture", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None  # noqa: N815
+    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None
     settings: Annotated[NodeSettings, Inline("PASS_PRE_PROCESS_TEXTURE")] = Field(
         default_factory=dict
     )
@@ -52,7 +52,7 @@ class ProcessBuffer(Configured):
     name: Annotated[
         str | None, Attr(doc="Buffer.", required=True, ref="buffer", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None  # noqa: N815
+    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None
     settings: Annotated[NodeSettings, Inline("PASS_PRE_PROCESS_BUFFER")] = Field(
         default_factory=dict
     )
@@ -74,7 +74,7 @@ class SceneReferences(Node):
     instances: Annotated[
         int | str | None, Attr(DataType.UINT, "Above 0: instanced drawing.", constant=True)
     ] = None
-    drawIndirectBuffer: Annotated[  # noqa: N815
+    drawIndirectBuffer: Annotated[
         str | None, Attr(doc="Buffer of indirect draw commands, `lib::buffer`.", ref="buffer")
     ] = None
     scenes: Annotated[list[SceneReference], Items(SceneReference, "scene")] = Field(
@@ -100,7 +100,7 @@ class TargetReference(Node):
     name: Annotated[
         str | None, Attr(doc="Render target.", ref="render target", library="fromLibrary")
     ] = None
-    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None  # noqa: N815
+    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None
     sameas: Annotated[str | None, Attr(doc="Name of an earlier pass.", ref="pass")] = None
 
 
@@ -110,13 +110,13 @@ class Pass(Configured):
     name: Annotated[str | None, Attr(doc="Pass name.", required=True)] = None
     class_: Annotated[str | None, Attr(name="class", doc="Pass class; default `default`.")] = None
     mode: Annotated[Mode | None, Child(Mode)] = None
-    testScript: Annotated[TestScript | None, Child(TestScript)] = None  # noqa: N815
-    preScript: Annotated[Script | None, Child(Script)] = None  # noqa: N815
-    postScript: Annotated[Script | None, Child(Script)] = None  # noqa: N815
-    preProcess: Annotated[ProcessItems, Variants(_PROCESS, "preProcess")] = Field(  # noqa: N815
+    testScript: Annotated[TestScript | None, Child(TestScript)] = None
+    preScript: Annotated[Script | None, Child(Script)] = None
+    postScript: Annotated[Script | None, Child(Script)] = None
+    preProcess: Annotated[ProcessItems, Variants(_PROCESS, "preProcess")] = Field(
         default_factory=list
     )
-    postProcess: Annotated[ProcessItems, Variants(_PROCESS, "postProcess")] = Field(  # noqa: N815
+    postProcess: Annotated[ProcessItems, Variants(_PROCESS, "postProcess")] = Field(
         default_factory=list
     )
     scenes: Annotated[SceneReferences | None, Child(SceneReferences)] = None
@@ -124,16 +124,14 @@ class Pass(Configured):
     viewports: Annotated[
         list[ViewportReference], Items(ViewportReference, "viewport", "viewports")
     ] = Field(default_factory=list)
-    renderTarget: Annotated[  # noqa: N815
-        TargetReference | None, Child(TargetReference)
-    ] = None
+    renderTarget: Annotated[TargetReference | None, Child(TargetReference)] = None
     lights: Annotated[list[LightReference], Items(LightReference, "light", "lights")] = Field(
         default_factory=list
     )
-    injectionMaps: Annotated[  # noqa: N815
+    injectionMaps: Annotated[
         list[InjectionMap], Items(InjectionMap, "map", "injectionMaps", "Applied first.")
     ] = Field(default_factory=list)
-    materialMaps: Annotated[  # noqa: N815
+    materialMaps: Annotated[
         list[MaterialMap], Items(MaterialMap, "map", "materialMaps", "Applied last; they win.")
     ] = Field(default_factory=list)
     settings: Annotated[NodeSettings, Settings("PASS")] = Field(default_factory=dict)

@@ -16,15 +16,13 @@ class Pipeline(Node):
     """A sequence of passes."""
 
     name: Annotated[str | None, Attr(doc="Pipeline name.", required=True)] = None
-    defaultCamera: Annotated[  # noqa: N815
-        str | None, Attr(doc="Camera that the user steers.", ref="camera")
-    ] = None
-    frameCount: Annotated[  # noqa: N815
-        int | None, Attr(DataType.UINT, "Frames, in mode RUN_ALL.")
-    ] = None
-    preScript: Annotated[Script | None, Child(Script)] = None  # noqa: N815
-    postScript: Annotated[Script | None, Child(Script)] = None  # noqa: N815
-    testScript: Annotated[Script | None, Child(Script)] = None  # noqa: N815
+    defaultCamera: Annotated[str | None, Attr(doc="Camera that the user steers.", ref="camera")] = (
+        None
+    )
+    frameCount: Annotated[int | None, Attr(DataType.UINT, "Frames, in mode RUN_ALL.")] = None
+    preScript: Annotated[Script | None, Child(Script)] = None
+    postScript: Annotated[Script | None, Child(Script)] = None
+    testScript: Annotated[Script | None, Child(Script)] = None
     passes: Annotated[
         list[Pass], Items(Pass, "pass", doc="Executed in document order.", choose=pass_model)
     ] = Field(default_factory=list)

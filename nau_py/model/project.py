@@ -27,9 +27,7 @@ class Constant(Node):
 class UserAttribute(Node):
     """An attribute that the project adds to an object type (nau-format.md, 3.3)."""
 
-    type: Annotated[
-        str | None, Attr(doc="Object type.", required=True, ref="object type")
-    ] = None
+    type: Annotated[str | None, Attr(doc="Object type.", required=True, ref="object type")] = None
     name: Annotated[str | None, Attr(doc="Attribute name.", required=True)] = None
     data: Annotated[
         str | None,
@@ -67,10 +65,10 @@ class Assets(Node):
     aliases: Annotated[
         list[Constant], Items(Constant, "alias", "aliases", "Another spelling of constants.")
     ] = Field(default_factory=list)
-    attributes: Annotated[
-        list[UserAttribute], Items(UserAttribute, "attribute", "attributes")
-    ] = Field(default_factory=list)
-    physicsLibs: Annotated[  # noqa: N815
+    attributes: Annotated[list[UserAttribute], Items(UserAttribute, "attribute", "attributes")] = (
+        Field(default_factory=list)
+    )
+    physicsLibs: Annotated[
         list[PhysicsReference], Items(PhysicsReference, "physicsLib", "physicsLibs")
     ] = Field(default_factory=list)
     scenes: Annotated[list[Scene], Items(Scene, "scene", "scenes")] = Field(default_factory=list)
@@ -91,7 +89,7 @@ class Assets(Node):
     atomics: Annotated[list[Atomic], Items(Atomic, "atomic", "atomics")] = Field(
         default_factory=list
     )
-    materialLibs: Annotated[  # noqa: N815
+    materialLibs: Annotated[
         list[LibraryReference], Items(LibraryReference, "materialLib", "materialLibs")
     ] = Field(default_factory=list)
 
@@ -102,9 +100,11 @@ class ProjectFile(Node):
     name: Annotated[str | None, Attr(doc="Project name.", required=True)] = None
     width: Annotated[int | None, Attr(DataType.INT, "Window width, pixels.")] = None
     height: Annotated[int | None, Attr(DataType.INT, "Window height, pixels.")] = None
-    raytracePasses: Annotated[  # noqa: N815
+    raytracePasses: Annotated[
         str | None,
-        Attr(doc="`many` allows more than one raytrace pass (nau_py only).", values=("one", "many")),
+        Attr(
+            doc="`many` allows more than one raytrace pass (nau_py only).", values=("one", "many")
+        ),
     ] = None
     assets: Annotated[Assets | None, Child(Assets)] = None
     pipelines: Annotated[Pipelines | None, Child(Pipelines)] = None

@@ -15,10 +15,24 @@ from nau_py.model.values import DataType
 
 PROGRAM_KINDS = ("CLOSEST_HIT", "ANY_HIT", "MISS")
 BUILTIN = "builtin"
-VERTEX_ATTRIBUTES = (
-    "position normal color texCoord0 texCoord1 texCoord2 texCoord3 tangent bitangent triangleID "
-    "custom0 custom1 custom2 custom3 custom4 custom5"
-).split()
+VERTEX_ATTRIBUTES = [
+    "position",
+    "normal",
+    "color",
+    "texCoord0",
+    "texCoord1",
+    "texCoord2",
+    "texCoord3",
+    "tangent",
+    "bitangent",
+    "triangleID",
+    "custom0",
+    "custom1",
+    "custom2",
+    "custom3",
+    "custom4",
+    "custom5",
+]
 
 
 class Program(Node):
@@ -57,15 +71,15 @@ class RayMaterial(Node):
     """Programs of a material, by ray type."""
 
     to: Annotated[str | None, Attr(doc="Material, or prefix and a final `*`.")] = None
-    rayTypes: Annotated[  # noqa: N815
-        list[RayTypePrograms], Items(RayTypePrograms, "rayType")
-    ] = Field(default_factory=list)
+    rayTypes: Annotated[list[RayTypePrograms], Items(RayTypePrograms, "rayType")] = Field(
+        default_factory=list
+    )
 
 
 class EntryPoint(Node):
     """Where a launch begins, and what runs when it fails."""
 
-    rayGen: Annotated[Program | None, Child(Program, doc="Ray generation.")] = None  # noqa: N815
+    rayGen: Annotated[Program | None, Child(Program, doc="Ray generation.")] = None
     exception: Annotated[Program | None, Child(Program, doc="Exception program.")] = None
 
 
@@ -87,9 +101,7 @@ class RayVariable(Node):
     """A value handed to programs under a name."""
 
     name: Annotated[str | None, Attr(doc="Name in the programs.", required=True)] = None
-    type: Annotated[
-        str | None, Attr(doc="Object type.", required=True, ref="object type")
-    ] = None
+    type: Annotated[str | None, Attr(doc="Object type.", required=True, ref="object type")] = None
     context: Annotated[str | None, Attr(doc="Object name, or CURRENT.", required=True)] = None
     component: Annotated[str | None, Attr(doc="Attribute of the type.", required=True)] = None
     id: Annotated[int | None, Attr(DataType.INT, "Unit, binding point or light index.")] = None
@@ -120,32 +132,30 @@ class OutputBuffer(Node):
 class RaytracePass(Pass):
     """Traces rays and writes what they bring to its render target."""
 
-    rtRayTypes: Annotated[  # noqa: N815
-        list[RayType], Items(RayType, "rayType", "rtRayTypes")
-    ] = Field(default_factory=list)
-    rtVertexAttributes: Annotated[  # noqa: N815
+    rtRayTypes: Annotated[list[RayType], Items(RayType, "rayType", "rtRayTypes")] = Field(
+        default_factory=list
+    )
+    rtVertexAttributes: Annotated[
         list[VertexAttribute], Items(VertexAttribute, "attribute", "rtVertexAttributes")
     ] = Field(default_factory=list)
-    rtEntryPoint: Annotated[EntryPoint | None, Child(EntryPoint)] = None  # noqa: N815
-    rtDefaultMaterial: Annotated[  # noqa: N815
-        RayMaterial | None, Child(RayMaterial)
-    ] = None
-    rtMaterialMap: Annotated[  # noqa: N815
-        list[RayMaterial], Items(RayMaterial, "rtMap", "rtMaterialMap")
-    ] = Field(default_factory=list)
-    rtGlobalParams: Annotated[  # noqa: N815
-        list[RayVariable], Items(RayVariable, "param", "rtGlobalParams")
-    ] = Field(default_factory=list)
-    rtMaterialParams: Annotated[  # noqa: N815
+    rtEntryPoint: Annotated[EntryPoint | None, Child(EntryPoint)] = None
+    rtDefaultMaterial: Annotated[RayMaterial | None, Child(RayMaterial)] = None
+    rtMaterialMap: Annotated[list[RayMaterial], Items(RayMaterial, "rtMap", "rtMaterialMap")] = (
+        Field(default_factory=list)
+    )
+    rtGlobalParams: Annotated[list[RayVariable], Items(RayVariable, "param", "rtGlobalParams")] = (
+        Field(default_factory=list)
+    )
+    rtMaterialParams: Annotated[
         list[RayVariable], Items(RayVariable, "param", "rtMaterialParams")
     ] = Field(default_factory=list)
-    rtInput: Annotated[  # noqa: N815
-        list[InputBuffer], Items(InputBuffer, "buffer", "rtInput")
-    ] = Field(default_factory=list)
-    rtOutput: Annotated[  # noqa: N815
-        list[OutputBuffer], Items(OutputBuffer, "buffer", "rtOutput")
-    ] = Field(default_factory=list)
-    rtGeometryProgram: Annotated[  # noqa: N815
+    rtInput: Annotated[list[InputBuffer], Items(InputBuffer, "buffer", "rtInput")] = Field(
+        default_factory=list
+    )
+    rtOutput: Annotated[list[OutputBuffer], Items(OutputBuffer, "buffer", "rtOutput")] = Field(
+        default_factory=list
+    )
+    rtGeometryProgram: Annotated[
         list[GeometryProgram], Items(GeometryProgram, "rtProgram", "rtGeometryProgram")
     ] = Field(default_factory=list)
 

@@ -37,9 +37,7 @@ class Geometry(Configured):
     """A built-in primitive (nau-format.md, 10.7)."""
 
     name: Annotated[str | None, Attr(doc="Object and mesh name.", required=True)] = None
-    type: Annotated[
-        str | None, Attr(doc="Primitive.", required=True, values=PRIMITIVES)
-    ] = None
+    type: Annotated[str | None, Attr(doc="Primitive.", required=True, values=PRIMITIVES)] = None
     material: Annotated[str | None, Attr(doc="Material of the default library.")] = None
     sphere: Annotated[NodeSettings, Inline("SPHERE", _INLINE_SIZES)] = Field(default_factory=dict)
     grid: Annotated[NodeSettings, Inline("GRID")] = Field(default_factory=dict)
@@ -52,7 +50,7 @@ class Terrain(Configured):
     """A grid built from a height map."""
 
     name: Annotated[str | None, Attr(doc="Object name.", required=True)] = None
-    heightMap: Annotated[  # noqa: N815
+    heightMap: Annotated[
         str | None, Attr(doc="Image; its luminance is the height.", required=True, file="texture")
     ] = None
     material: Annotated[str | None, Attr(doc="Material of the default library.")] = None
@@ -65,9 +63,7 @@ class BufferGeometry(Node):
     """Geometry that lives in GPU buffers; children are named like vertex attributes."""
 
     name: Annotated[str | None, Attr(doc="Object name.", required=True)] = None
-    primitive: Annotated[
-        str | None, Attr(doc="Topology.", required=True, values=TOPOLOGIES)
-    ] = None
+    primitive: Annotated[str | None, Attr(doc="Topology.", required=True, values=TOPOLOGIES)] = None
     material: Annotated[str | None, Attr(doc="Material of the default library.")] = None
 
 
@@ -94,7 +90,7 @@ class Scene(Configured):
         str | None, Attr(doc="One model file; all children are then ignored.", file="model")
     ] = None
     param: Annotated[str | None, Attr(doc="Flags: UNITIZE, SWAP_YZ, USE_ADJACENCY.")] = None
-    physicsMaterial: Annotated[str | None, Attr(doc="Physics only: ignored.")] = None  # noqa: N815
+    physicsMaterial: Annotated[str | None, Attr(doc="Physics only: ignored.")] = None
     geometry: Annotated[list[Geometry], Items(Geometry, "geometry")] = Field(default_factory=list)
     terrain: Annotated[list[Terrain], Items(Terrain, "terrain")] = Field(default_factory=list)
     buffers: Annotated[list[BufferGeometry], Items(BufferGeometry, "buffers")] = Field(
@@ -111,5 +107,3 @@ class Scene(Configured):
     def has_flag(self, flag: str) -> bool:
         """Whether ``param`` contains ``flag``."""
         return flag in (self.param or "")
-
-

@@ -15,7 +15,7 @@ class ColorAttachment(Node):
     """A colour target; the n-th one is draw buffer n."""
 
     name: Annotated[str | None, Attr(doc="Texture name.", required=True)] = None
-    internalFormat: Annotated[  # noqa: N815
+    internalFormat: Annotated[
         str | None, Attr(doc="Texel format.", required=True, values=COLOR_FORMATS)
     ] = None
 
@@ -28,7 +28,7 @@ class DepthAttachment(Node):
     """The depth target."""
 
     name: Annotated[str | None, Attr(doc="Texture name.", required=True)] = None
-    internalFormat: Annotated[  # noqa: N815
+    internalFormat: Annotated[
         str | None, Attr(doc="Depth format.", required=True, values=DEPTH_FORMATS)
     ] = None
 
@@ -48,9 +48,7 @@ class RenderTarget(Configured):
         Variants({"color": ColorAttachment, "cubemap": CubeMapAttachment}, "colors"),
     ] = Field(default_factory=list)
     depth: Annotated[DepthAttachment | None, Child(DepthAttachment)] = None
-    depthStencil: Annotated[  # noqa: N815
-        DepthStencilAttachment | None, Child(DepthStencilAttachment)
-    ] = None
+    depthStencil: Annotated[DepthStencilAttachment | None, Child(DepthStencilAttachment)] = None
     settings: Annotated[NodeSettings, Settings("RENDER_TARGET")] = Field(default_factory=dict)
 
     @property

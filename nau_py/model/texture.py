@@ -29,12 +29,12 @@ class CubeMap(Node):
     """Six images."""
 
     name: Annotated[str | None, Attr(doc="Texture name.", required=True)] = None
-    filePosX: Annotated[str | None, _FACE] = None  # noqa: N815
-    fileNegX: Annotated[str | None, _FACE] = None  # noqa: N815
-    filePosY: Annotated[str | None, _FACE] = None  # noqa: N815
-    fileNegY: Annotated[str | None, _FACE] = None  # noqa: N815
-    filePosZ: Annotated[str | None, _FACE] = None  # noqa: N815
-    fileNegZ: Annotated[str | None, _FACE] = None  # noqa: N815
+    filePosX: Annotated[str | None, _FACE] = None
+    fileNegX: Annotated[str | None, _FACE] = None
+    filePosY: Annotated[str | None, _FACE] = None
+    fileNegY: Annotated[str | None, _FACE] = None
+    filePosZ: Annotated[str | None, _FACE] = None
+    fileNegZ: Annotated[str | None, _FACE] = None
     mipmap: Annotated[str | None, Attr(doc="Only the exact text `true` counts.")] = None
 
 

@@ -69,11 +69,50 @@ class DataType(StrEnum):
         return self not in (DataType.MAT3, DataType.MAT4, DataType.INTARRAY)
 
 
-STRUCTURE_TYPES = (
-    "INT IVEC2 IVEC3 IVEC4 UINT UIVEC2 UIVEC3 UIVEC4 BOOL BVEC2 BVEC3 BVEC4 FLOAT VEC2 VEC3 VEC4 "
-    "DOUBLE DVEC2 DVEC3 DVEC4 MAT2 MAT3 MAT4 MAT2x3 MAT2x4 MAT3x2 MAT3x4 MAT4x2 MAT4x3 DMAT2 DMAT3 "
-    "DMAT4 DMAT2x3 DMAT2x4 DMAT3x2 DMAT3x4 DMAT4x2 DMAT4x3 BYTE UBYTE SHORT USHORT"
-).split()
+STRUCTURE_TYPES = [
+    "INT",
+    "IVEC2",
+    "IVEC3",
+    "IVEC4",
+    "UINT",
+    "UIVEC2",
+    "UIVEC3",
+    "UIVEC4",
+    "BOOL",
+    "BVEC2",
+    "BVEC3",
+    "BVEC4",
+    "FLOAT",
+    "VEC2",
+    "VEC3",
+    "VEC4",
+    "DOUBLE",
+    "DVEC2",
+    "DVEC3",
+    "DVEC4",
+    "MAT2",
+    "MAT3",
+    "MAT4",
+    "MAT2x3",
+    "MAT2x4",
+    "MAT3x2",
+    "MAT3x4",
+    "MAT4x2",
+    "MAT4x3",
+    "DMAT2",
+    "DMAT3",
+    "DMAT4",
+    "DMAT2x3",
+    "DMAT2x4",
+    "DMAT3x2",
+    "DMAT3x4",
+    "DMAT4x2",
+    "DMAT4x3",
+    "BYTE",
+    "UBYTE",
+    "SHORT",
+    "USHORT",
+]
 """Names that ``<structure><field value=/>`` of a buffer accepts."""
 
 _INTEGER = re.compile(r"\s*([+-]?\d+)")

@@ -83,9 +83,7 @@ def add_maps(access: Access, project: Project, pass_: Pass) -> None:
     for injection in pass_.injectionMaps:
         _add_injection(access, injection)
     for map_ in pass_.materialMaps:
-        add_material(
-            access, project, map_.toLibrary or DEFAULT_LIBRARY, map_.toMaterial or ""
-        )
+        add_material(access, project, map_.toLibrary or DEFAULT_LIBRARY, map_.toMaterial or "")
 
 
 def add_process(access: Access, pass_: Pass) -> None:
@@ -118,8 +116,10 @@ def add_target(access: Access, project: Project, pass_: Pass, clears: bool) -> N
     for name in target.texture_names:
         resource = texture(name, library)
         cleared = depth if name == target.depth_name else colour
-        access.add_write(resource)
+        if resource not in access.writes:
+            access.add_write(resource)
         if cleared and whole:
             access.replaces.append(resource)
-        elif clears and not cleared:
+        elif clears and not cleared and resource not in access.reads:
             access.add_read(resource)
+            access.keeps.append(resource)

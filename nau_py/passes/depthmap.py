@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-
 import numpy as np
 
 from nau_py.graph.contract import Access
@@ -38,8 +37,13 @@ def light_camera(name: str, light: LightState, corners: F64) -> CameraState:
     seen = corners @ state.view_matrix()[:3, :3].T + state.view_matrix()[:3, 3]
     low, high = seen.min(axis=0), seen.max(axis=0)
     state.values = {
-        "FOV": 60.0, "LEFT": low[0], "RIGHT": high[0], "BOTTOM": low[1], "TOP": high[1],
-        "NEAR": -high[2], "FAR": -low[2],
+        "FOV": 60.0,
+        "LEFT": low[0],
+        "RIGHT": high[0],
+        "BOTTOM": low[1],
+        "TOP": high[1],
+        "NEAR": -high[2],
+        "FAR": -low[2],
     }
     return state
 
@@ -77,14 +81,10 @@ class DepthmapClass:
         GL.glEnable(GL.GL_DEPTH_CLAMP)
         process(list(pass_.preProcess), frame)
         projection = camera.projection_matrix(1.0)
-        context = draw_context(
-            pass_, frame, target, projection, camera.view_matrix(), lights=True
-        )
+        context = draw_context(pass_, frame, target, projection, camera.view_matrix(), lights=True)
         materials = frame.session.pass_materials(pass_)
         draw(draw_list(frame.world.objects(pass_.scene_names), materials.__getitem__), context)
         GL.glDisable(GL.GL_DEPTH_CLAMP)
         frame.session.resources.barrier()
         process(list(pass_.postProcess), frame)
         note_pixels(record, frame)
-
-

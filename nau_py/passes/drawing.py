@@ -29,9 +29,7 @@ def viewport_names(pass_: Pass) -> list[str]:
     return single + [v.name for v in pass_.viewports if v.name]
 
 
-def target_and_rect(
-    pass_: Pass, frame: FrameContext, uses_camera: bool
-) -> tuple[Target, Rect]:
+def target_and_rect(pass_: Pass, frame: FrameContext, uses_camera: bool) -> tuple[Target, Rect]:
     """Where a pass draws (nau-format.md, 11.5)."""
     session = frame.session
     reference = target_reference(frame.project, pass_)

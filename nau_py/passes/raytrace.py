@@ -133,7 +133,8 @@ class _State:
             if node.to in names:
                 return node
         prefixed = sorted(
-            (n for n in pass_.rtMaterialMap if n.to and n.to.endswith("*")), key=lambda n: n.to or ""
+            (n for n in pass_.rtMaterialMap if n.to and n.to.endswith("*")),
+            key=lambda n: n.to or "",
         )
         for node in prefixed:
             if matches(node.to or "", name):
@@ -323,6 +324,6 @@ def _store(target: Target, pixels: NDArray[np.int64], colours: NDArray[np.float3
     shaped = image.reshape(target.height, target.width, 4)[:, :, :channels]
     dtype = texture_.format.dtype
     if np.issubdtype(dtype, np.integer) and not texture_.format.integer:
-        scale = np.float32(np.iinfo(dtype).max)
+        scale = np.float32(np.iinfo(np.dtype(dtype)).max)
         shaped = np.rint(np.clip(shaped, 0, 1) * scale)
     texture_.write(shaped)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from functools import lru_cache
+from typing import Any
 
 import moderngl
 
@@ -22,13 +23,13 @@ class Device:
     """A moderngl context that is current in this thread."""
 
     def __init__(self) -> None:
-        options = {"backend": "egl"} if sys.platform.startswith("linux") else {}
+        options: dict[str, Any] = {"backend": "egl"} if sys.platform.startswith("linux") else {}
         try:
             self.ctx = moderngl.create_context(standalone=True, require=REQUIRED_VERSION, **options)
         except Exception as problem:  # glcontext raises plain Exception
             raise DeviceError(
                 error(
-                    "D001",
+                    "D101",
                     NOWHERE,
                     f"no OpenGL {REQUIRED_VERSION / 100:.1f} driver: {problem}; {HOW_TO_GET}",
                 )

@@ -51,8 +51,14 @@ def pixel_format(name: str) -> PixelFormat:
     if name in _DEPTH_KINDS:
         stencil = "STENCIL" in name
         return PixelFormat(
-            name, _DEPTH_KINDS[name], GL.GL_DEPTH_COMPONENT, GL.GL_FLOAT, np.float32, 1,
-            depth=True, stencil=stencil,
+            name,
+            _DEPTH_KINDS[name],
+            GL.GL_DEPTH_COMPONENT,
+            GL.GL_FLOAT,
+            np.float32,
+            1,
+            depth=True,
+            stencil=stencil,
         )
     family = "RGBA" if name.startswith("RGBA") else "RG" if name.startswith("RG") else "R"
     channels = len(family)

@@ -24,19 +24,45 @@ from OpenGL import GL  # noqa: E402
 
 Array = NDArray[Any]
 
-_UNIFORM_F = {1: "glProgramUniform1fv", 2: "glProgramUniform2fv", 3: "glProgramUniform3fv",
-              4: "glProgramUniform4fv"}
-_UNIFORM_I = {1: "glProgramUniform1iv", 2: "glProgramUniform2iv", 3: "glProgramUniform3iv",
-              4: "glProgramUniform4iv"}
-_UNIFORM_U = {1: "glProgramUniform1uiv", 2: "glProgramUniform2uiv", 3: "glProgramUniform3uiv",
-              4: "glProgramUniform4uiv"}
+_UNIFORM_F = {
+    1: "glProgramUniform1fv",
+    2: "glProgramUniform2fv",
+    3: "glProgramUniform3fv",
+    4: "glProgramUniform4fv",
+}
+_UNIFORM_I = {
+    1: "glProgramUniform1iv",
+    2: "glProgramUniform2iv",
+    3: "glProgramUniform3iv",
+    4: "glProgramUniform4iv",
+}
+_UNIFORM_U = {
+    1: "glProgramUniform1uiv",
+    2: "glProgramUniform2uiv",
+    3: "glProgramUniform3uiv",
+    4: "glProgramUniform4uiv",
+}
 _FLOAT_TYPES = {GL.GL_FLOAT: 1, GL.GL_FLOAT_VEC2: 2, GL.GL_FLOAT_VEC3: 3, GL.GL_FLOAT_VEC4: 4}
-_INT_TYPES = {GL.GL_INT: 1, GL.GL_INT_VEC2: 2, GL.GL_INT_VEC3: 3, GL.GL_INT_VEC4: 4,
-              GL.GL_BOOL: 1, GL.GL_BOOL_VEC2: 2, GL.GL_BOOL_VEC3: 3, GL.GL_BOOL_VEC4: 4}
-_UINT_TYPES = {GL.GL_UNSIGNED_INT: 1, GL.GL_UNSIGNED_INT_VEC2: 2, GL.GL_UNSIGNED_INT_VEC3: 3,
-               GL.GL_UNSIGNED_INT_VEC4: 4}
-_MATRIX_TYPES = {GL.GL_FLOAT_MAT3: (9, "glProgramUniformMatrix3fv"),
-                 GL.GL_FLOAT_MAT4: (16, "glProgramUniformMatrix4fv")}
+_INT_TYPES = {
+    GL.GL_INT: 1,
+    GL.GL_INT_VEC2: 2,
+    GL.GL_INT_VEC3: 3,
+    GL.GL_INT_VEC4: 4,
+    GL.GL_BOOL: 1,
+    GL.GL_BOOL_VEC2: 2,
+    GL.GL_BOOL_VEC3: 3,
+    GL.GL_BOOL_VEC4: 4,
+}
+_UINT_TYPES = {
+    GL.GL_UNSIGNED_INT: 1,
+    GL.GL_UNSIGNED_INT_VEC2: 2,
+    GL.GL_UNSIGNED_INT_VEC3: 3,
+    GL.GL_UNSIGNED_INT_VEC4: 4,
+}
+_MATRIX_TYPES = {
+    GL.GL_FLOAT_MAT3: (9, "glProgramUniformMatrix3fv"),
+    GL.GL_FLOAT_MAT4: (16, "glProgramUniformMatrix4fv"),
+}
 
 
 def get_error() -> int:
@@ -109,7 +135,9 @@ def upload_2d(
 ) -> None:
     """Fill a texture level; ``data`` rows run from the bottom up."""
     GL.glPixelStorei(GL.GL_UNPACK_ALIGNMENT, 1)
-    GL.glTextureSubImage2D(name, level, 0, 0, width, height, layout, kind, np.ascontiguousarray(data))
+    GL.glTextureSubImage2D(
+        name, level, 0, 0, width, height, layout, kind, np.ascontiguousarray(data)
+    )
 
 
 def upload_face(
@@ -141,8 +169,14 @@ def _active(program: int, interface: int, properties: list[int]) -> list[tuple[s
             program, interface, index, len(wanted), wanted, len(values), length, values
         )
         name = np.zeros(256, np.int8)
-        GL.glGetProgramResourceName(program, interface, index, 256, length, name.ctypes.data_as(
-            ctypes.POINTER(ctypes.c_char)))
+        GL.glGetProgramResourceName(
+            program,
+            interface,
+            index,
+            256,
+            length,
+            name.ctypes.data_as(ctypes.POINTER(ctypes.c_char)),
+        )
         text = name.tobytes().split(b"\0")[0].decode("ascii", "replace")
         found.append((text, [int(v) for v in values]))
     return found
@@ -178,7 +212,9 @@ def create_vertex_array(inputs: list[tuple[int, int]], indices: int) -> int:
     return array
 
 
-def draw_elements(program: int, array: int, mode: int, count: int, first: int, instances: int) -> None:
+def draw_elements(
+    program: int, array: int, mode: int, count: int, first: int, instances: int
+) -> None:
     """Draw ``count`` indices from ``first``, ``instances`` times."""
     GL.glUseProgram(program)
     GL.glBindVertexArray(array)

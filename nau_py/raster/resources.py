@@ -64,17 +64,26 @@ class Resources:
 
         width, height = (int(v) for v in value("SIZE"))
         if width < 1 or height < 1:
-            message = f"render target '{node.name}': SIZE is {width} x {height}, which holds no pixel"
+            message = (
+                f"render target '{node.name}': SIZE is {width} x {height}, which holds no pixel"
+            )
             raise ProjectError(error("P010", node.location, message))
-        colors = [Attachment(f"{library}::{c.name}", c.internalFormat or "RGBA") for c in node.colors]
+        colors = [
+            Attachment(f"{library}::{c.name}", c.internalFormat or "RGBA") for c in node.colors
+        ]
         fmt = "DEPTH24_STENCIL8" if node.depthStencil else "DEPTH_COMPONENT32F"
         if node.depth is not None and node.depth.internalFormat:
             fmt = node.depth.internalFormat
         r, g, b, a = (float(v) for v in value("CLEAR_VALUES"))
         target = Target(
-            f"{library}::{node.name}", width, height, colors,
-            Attachment(f"{library}::{node.depth_name}", fmt), (r, g, b, a),
-            max(int(value("LEVELS")[0]), 1), max(int(value("LAYERS")[0]), 1),
+            f"{library}::{node.name}",
+            width,
+            height,
+            colors,
+            Attachment(f"{library}::{node.depth_name}", fmt),
+            (r, g, b, a),
+            max(int(value("LEVELS")[0]), 1),
+            max(int(value("LAYERS")[0]), 1),
         )
         status = target.allocate()
         if status != COMPLETE:
@@ -192,12 +201,22 @@ class Resources:
                 bound = context.material.textures.get(index) if context.material else None
                 texture = self.texture(bound.texture, bound.path) if bound else None
             else:
-                texture = self.texture(name if "::" in name else f"{context.material.library}::{name}"
-                                       if context.material else name)
+                texture = self.texture(
+                    name
+                    if "::" in name
+                    else f"{context.material.library}::{name}"
+                    if context.material
+                    else name
+                )
             if texture is None:
                 return None
-            sizes = {"WIDTH": texture.width, "HEIGHT": texture.height, "LEVELS": texture.levels,
-                     "LAYERS": texture.layers, "ID": texture.glo}
+            sizes = {
+                "WIDTH": texture.width,
+                "HEIGHT": texture.height,
+                "LEVELS": texture.levels,
+                "LAYERS": texture.layers,
+                "ID": texture.glo,
+            }
             return np.array([sizes[component]]) if component in sizes else None
         return None
 

@@ -1,5 +1,4 @@
-"""Where uniform values come from: ``valueof`` types, contexts and components (nau-format.md, 8, 9).
-"""
+"""Where uniform values come from: types, contexts and components (nau-format.md, 8 and 9)."""
 
 from __future__ import annotations
 
@@ -15,7 +14,7 @@ from nau_py.scene.camera import CameraState
 from nau_py.scene.lights import LightState
 from nau_py.scene.material import RenderMaterial
 from nau_py.scene.mesh import F64
-from nau_py.scene.transforms import to_unit_cube
+from nau_py.scene.transforms import inverse, to_unit_cube
 from nau_py.scene.viewport import Rect
 from nau_py.scene.world import World
 
@@ -73,12 +72,12 @@ def camera_value(camera: CameraState, component: str, aspect: float) -> Value | 
     matrices: dict[str, Callable[[], F64]] = {
         "VIEW_MATRIX": camera.view_matrix,
         "PROJECTION_MATRIX": lambda: camera.projection_matrix(aspect),
-        "VIEW_INVERSE_MATRIX": lambda: np.linalg.inv(camera.view_matrix()),
-        "PROJECTION_INVERSE_MATRIX": lambda: np.linalg.inv(camera.projection_matrix(aspect)),
+        "VIEW_INVERSE_MATRIX": lambda: inverse(camera.view_matrix()),
+        "PROJECTION_INVERSE_MATRIX": lambda: inverse(camera.projection_matrix(aspect)),
         "PROJECTION_VIEW_MATRIX": lambda: camera.projection_matrix(aspect) @ camera.view_matrix(),
-        "TS05_PVM_MATRIX": lambda: to_unit_cube()
-        @ camera.projection_matrix(aspect)
-        @ camera.view_matrix(),
+        "TS05_PVM_MATRIX": lambda: (
+            to_unit_cube() @ camera.projection_matrix(aspect) @ camera.view_matrix()
+        ),
     }
     make = matrices.get(component)
     return column_major(make()) if make else None
@@ -179,7 +178,9 @@ def _pass(context: DrawContext, component: str) -> Value | None:
     return None if not values or isinstance(values[0], str) else _scalars(values)
 
 
-def resolve(context: DrawContext, type_: str, name: str, component: str, index: int) -> Value | None:
+def resolve(
+    context: DrawContext, type_: str, name: str, component: str, index: int
+) -> Value | None:
     """The value of a source, flat; None where it has none, so that the uniform keeps its own.
 
     float64 for scalars and vectors, column-major float32 for matrices.

@@ -45,9 +45,7 @@ class Target:
             GL.glNamedFramebufferTexture(self.fbo, point, texture.glo, 0)
         depth = make_2d(self.depth.format, self.width, self.height, 1, self.layers)
         self.textures[self.depth.name] = depth
-        point = (
-            GL.GL_DEPTH_STENCIL_ATTACHMENT if depth.format.stencil else GL.GL_DEPTH_ATTACHMENT
-        )
+        point = GL.GL_DEPTH_STENCIL_ATTACHMENT if depth.format.stencil else GL.GL_DEPTH_ATTACHMENT
         GL.glNamedFramebufferTexture(self.fbo, point, depth.glo, 0)
         buffers = [GL.GL_COLOR_ATTACHMENT0 + i for i in range(len(self.colors))] or [GL.GL_NONE]
         GL.glNamedFramebufferDrawBuffers(self.fbo, len(buffers), np.array(buffers, np.uint32))
@@ -99,7 +97,10 @@ COMPLETE = int(GL.GL_FRAMEBUFFER_COMPLETE)
 def window_target(width: int, height: int) -> Target:
     """The window: 8-bit RGBA with depth and stencil, never shown."""
     target = Target(
-        "window", width, height, [Attachment("window", "RGBA")],
+        "window",
+        width,
+        height,
+        [Attachment("window", "RGBA")],
         Attachment("window_depth", "DEPTH24_STENCIL8"),
     )
     target.allocate()

@@ -69,8 +69,13 @@ def make_2d(
         GL.glTextureStorage3D(texture.glo, levels, fmt.internal, width, height, depth)
     elif layers > 1:
         texture = Texture(
-            gl.create_texture(GL.GL_TEXTURE_2D_ARRAY), GL.GL_TEXTURE_2D_ARRAY, fmt, width, height,
-            levels, layers,
+            gl.create_texture(GL.GL_TEXTURE_2D_ARRAY),
+            GL.GL_TEXTURE_2D_ARRAY,
+            fmt,
+            width,
+            height,
+            levels,
+            layers,
         )
         GL.glTextureStorage3D(texture.glo, levels, fmt.internal, width, height, layers)
     else:

@@ -80,8 +80,6 @@ class Rays:
         return uniform(self.tracer.seed, self.pixel, self.sample, dimension + 1024 * self.depth)
 
 
-
-
 class Hits:
     """A batch of hits on one material."""
 
@@ -207,7 +205,12 @@ class Hits:
         unit = np.asarray(normalize(wide), np.float32)
         origin = spawn(position, normal, bound, unit)
         rays = Rays(
-            self.rays.tracer, origin, unit, self.rays.pixel, self.rays.sample, self.depth + 1,
+            self.rays.tracer,
+            origin,
+            unit,
+            self.rays.pixel,
+            self.rays.sample,
+            self.depth + 1,
             ray_type,
         )
         limit = None if tmax is None else np.broadcast_to(np.asarray(tmax, np.float32), len(self))

@@ -109,7 +109,7 @@ def run_launch(
             rays,
         )
         colours = generate.radiance(launch, len(flat))
-        valid = np.isfinite(colours).all(axis=1)
+        valid = np.asarray(np.isfinite(colours).all(axis=1))
         if not valid.all():
             tracer.counts.nonfinite += int((~valid).sum())
             if exception is not None:

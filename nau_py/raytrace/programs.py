@@ -121,8 +121,8 @@ class ProgramLoader:
 
     def load(self, program: Program, label: str) -> BoundProgram:
         """The callable behind a ``file`` and ``proc``. Raises :class:`ProgramError`."""
-        from nau_py.raytrace.builtin import FUNCTIONS
         from nau_py.model.program_source import stand_in, strip_decoration
+        from nau_py.raytrace.builtin import FUNCTIONS
 
         proc = program.proc or ""
         if program.file == BUILTIN:

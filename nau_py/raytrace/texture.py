@@ -38,7 +38,7 @@ class RayTexture:
         fx, fy = (x - x0).astype(np.float32)[:, None], (y - y0).astype(np.float32)[:, None]
         low = self._fetch(x0, y0) * (1 - fx) + self._fetch(x0 + 1, y0) * fx
         high = self._fetch(x0, y0 + 1) * (1 - fx) + self._fetch(x0 + 1, y0 + 1) * fx
-        return low * (1 - fy) + high * fy
+        return np.asarray(low * (1 - fy) + high * fy, np.float32)
 
     def _fetch(self, x: NDArray[np.float64], y: NDArray[np.float64]) -> F32:
         height, width, channels = self.texels.shape

@@ -79,9 +79,7 @@ class Tracer:
         self.seed = scene.seed
         self.clear_color = scene.clear_color
 
-    def trace(
-        self, rays: Rays, tmax: F32 | None, kind: str | None, initial: float
-    ) -> F32:
+    def trace(self, rays: Rays, tmax: F32 | None, kind: str | None, initial: float) -> F32:
         """What a batch of rays brings, RGBA float32 (n, 4)."""
         if rays.ray_type not in self.ray_types:
             known = ", ".join(self.ray_types)
@@ -174,7 +172,11 @@ class Tracer:
         self, rays: Rays, found: Intersections, chosen: NDArray[np.int64], material: int
     ) -> Hits:
         return Hits(
-            rays, found.triangle[chosen], found.u[chosen], found.v[chosen], found.t[chosen],
+            rays,
+            found.triangle[chosen],
+            found.u[chosen],
+            found.v[chosen],
+            found.t[chosen],
             self.scene.materials[material],
         )
 
@@ -195,8 +197,13 @@ def _take(rays: Rays, chosen: NDArray[np.int64]) -> Rays:
     if len(chosen) == len(rays):
         return rays
     return Rays(
-        rays.tracer, rays.origin[chosen], rays.direction[chosen], rays.pixel[chosen],
-        rays.sample[chosen], rays.depth, rays.ray_type,
+        rays.tracer,
+        rays.origin[chosen],
+        rays.direction[chosen],
+        rays.pixel[chosen],
+        rays.sample[chosen],
+        rays.depth,
+        rays.ray_type,
     )
 
 

@@ -9,13 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.diagnostic import Diagnostic, Severity, error, listing, nearest
+from nau_py.diagnostic import Diagnostic, Severity, error
 from nau_py.errors import NauError, ProjectError
 from nau_py.graph.plan import Plan, Step, make_plan
 from nau_py.graph.resource import WINDOW
-from nau_py.lint import lint
+from nau_py.lint.engine import lint
 from nau_py.model.linked import Project
-from nau_py.model.pipeline import Pipeline
 from nau_py.passes import pass_classes
 from nau_py.passes.frame import (
     FrameContext,
@@ -25,7 +24,9 @@ from nau_py.passes.frame import (
     Session,
     no_progress,
 )
+from nau_py.run.choose import choose_pipeline
 from nau_py.run.report import machine_facts, make_report
+from nau_py.scene.names import default_material_names
 from nau_py.scene.viewport import Rect
 from nau_py.scene.world import World
 
@@ -49,25 +50,6 @@ class Frame:
     report: dict[str, Any]
 
 
-def choose_pipeline(project: Project, name: str | None) -> Pipeline:
-    """The pipeline called ``name``, or the default. Raises :class:`ProjectError`."""
-    found = project.pipeline(name) if name is not None else project.default_pipeline
-    if found is None:
-        known = [p.name or "" for p in project.pipelines]
-        wanted = f"pipeline '{name}'" if name is not None else "a pipeline to run"
-        where = project.file.pipelines.location if project.file.pipelines else (
-            project.file.location)
-        raise ProjectError(
-            error(
-                "R013",
-                where,
-                f"project '{project.name}' has no {wanted}; it has {listing(known)}"
-                f"{nearest(name or '', known)}",
-            )
-        )
-    return found
-
-
 class Renderer:
     """Renders frames of one pipeline.
 
@@ -89,14 +71,14 @@ class Renderer:
         progress: Progress = no_progress,
     ) -> None:
         self.project = project
-        self.diagnostics: list[Diagnostic] = lint(project)
+        self.diagnostics: list[Diagnostic] = lint(
+            project, pass_classes(), default_material_names(project)
+        )
         errors = [d for d in self.diagnostics if d.severity is Severity.ERROR]
         if errors:
             raise ProjectError(errors)
         self.pipeline = choose_pipeline(project, pipeline)
-        self.plan: Plan = make_plan(
-            project, self.pipeline, pass_classes(), everything=keep_targets
-        )
+        self.plan: Plan = make_plan(project, self.pipeline, pass_classes(), everything=keep_targets)
         self.time_step = time_step
         self._size = size or project.size
         self._options = options or RunOptions()
@@ -152,8 +134,12 @@ class Renderer:
         image, targets = self._capture()
         ms = (perf_counter() - start) * 1000
         report = make_report(
-            self.project, self.pipeline.name or "", machine_facts(self.session), self.diagnostics,
-            [(frame, ms, records)], self._setup_ms,
+            self.project,
+            self.pipeline.name or "",
+            machine_facts(self.session),
+            self.diagnostics,
+            [(frame, ms, records)],
+            self._setup_ms,
         )
         return Frame(frame, image, targets, report)
 

@@ -86,3 +86,22 @@ def make_report(
         "warnings": warnings,
         "nonfinite": sum(r.nonfinite for r in all_records),
     }
+
+
+def joined(reports: list[dict[str, Any]]) -> dict[str, Any]:
+    """One report of several single-frame ones of the same run."""
+    first = reports[0]
+    rays: dict[str, int] = {}
+    for report in reports:
+        for kind, count in report["totals"]["rays"].items():
+            rays[kind] = rays.get(kind, 0) + count
+    return first | {
+        "frames": [frame for report in reports for frame in report["frames"]],
+        "totals": {
+            "ms": round(sum(r["totals"]["ms"] for r in reports), 3),
+            "rays": rays,
+            "rays_avoided": sum(r["totals"]["rays_avoided"] for r in reports),
+        },
+        "warnings": list(dict.fromkeys(w for r in reports for w in r["warnings"])),
+        "nonfinite": sum(r["nonfinite"] for r in reports),
+    }

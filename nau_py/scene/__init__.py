@@ -1,2 +1,1 @@
-"""Models, primitives, materials, cameras and lights: the world that passes draw. No GL, no Embree.
-"""
+"""Models, primitives, materials, cameras, lights: the world that passes draw. No GL or Embree."""

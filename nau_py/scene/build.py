@@ -19,9 +19,19 @@ from nau_py.scene.model_material import ModelMaterial
 from nau_py.scene.obj import ModelError, load_obj
 from nau_py.scene.transforms import transform_of
 
-ASSIMP_SUFFIXES = (
-    ".3ds .dae .fbx .blend .ply .lwo .stl .cob .scn .gltf .glb".split()
-)
+ASSIMP_SUFFIXES = [
+    ".3ds",
+    ".dae",
+    ".fbx",
+    ".blend",
+    ".ply",
+    ".lwo",
+    ".stl",
+    ".cob",
+    ".scn",
+    ".gltf",
+    ".glb",
+]
 SUFFIXES = (".obj", *ASSIMP_SUFFIXES)
 """Model files that this version reads."""
 _MERGED_TYPES = ("OctreeUnified",)
@@ -155,7 +165,7 @@ class SceneBuilder:
 
     def _valid(self, mesh: Mesh, path: Path, where: Location) -> Mesh:
         """``mesh`` without faces that have a non-finite vertex; each mesh is reported once."""
-        bad = ~np.isfinite(mesh.positions).all(axis=1)
+        bad = np.asarray(~np.isfinite(mesh.positions).all(axis=1))
         if not bad.any():
             return mesh
         vertex = int(np.argmax(bad))

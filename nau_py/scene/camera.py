@@ -46,7 +46,7 @@ class CameraState:
 
     @property
     def true_up(self) -> F64:
-        return np.cross(self.right, self.forward)
+        return np.asarray(np.cross(self.right, self.forward), np.float64)
 
     def view_matrix(self) -> F64:
         """World to camera."""
@@ -59,9 +59,7 @@ class CameraState:
         """Camera to clip; ``aspect`` is width / height of the viewport."""
         v = self.values
         if self.ortho:
-            return orthographic(
-                v["LEFT"], v["RIGHT"], v["BOTTOM"], v["TOP"], v["NEAR"], v["FAR"]
-            )
+            return orthographic(v["LEFT"], v["RIGHT"], v["BOTTOM"], v["TOP"], v["NEAR"], v["FAR"])
         return perspective(v["FOV"], aspect if aspect > 0 else 1.0, v["NEAR"], v["FAR"])
 
     def half_extent(self, aspect: float) -> tuple[float, float]:

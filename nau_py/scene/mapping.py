@@ -131,8 +131,10 @@ class PassMaterials:
         if source is None:
             return
         flags = [key for key in _FLAGS if getattr(color, key) is not None]
-        wanted = [_FLAGS[k] for k in flags if getattr(color, k) == "true"] if flags else list(
-            _FLAGS.values()
+        wanted = (
+            [_FLAGS[k] for k in flags if getattr(color, k) == "true"]
+            if flags
+            else list(_FLAGS.values())
         )
         for name in wanted:
             clone.colours[name] = source.colours[name]

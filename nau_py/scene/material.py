@@ -100,8 +100,14 @@ def uniform_sources(values: list[ValueOf], library: str) -> tuple[UniformSource,
     """The sources of a material's uniforms; incomplete ones are left to lint."""
     return tuple(
         UniformSource(
-            v.uniform, v.type, v.context or "CURRENT", v.component, v.id or 0, v.block or "",
-            library, v,
+            v.uniform,
+            v.type,
+            v.context or "CURRENT",
+            v.component,
+            v.id or 0,
+            v.block or "",
+            library,
+            v,
         )
         for v in values
         if v.uniform and v.type and v.component
@@ -158,9 +164,7 @@ def from_library(project: Project, library: str, node: Material) -> RenderMateri
     state_name = (node.state.name if node.state else None) or node.name or ""
     state = project.state(library, state_name)
     if state is not None:
-        material.state = {
-            name: project.value(state, "STATE", name) for name in state.settings
-        }
+        material.state = {name: project.value(state, "STATE", name) for name in state.settings}
     if node.shader is not None and node.shader.name:
         material.program = (library, node.shader.name)
         material.uniforms = uniform_sources(node.shader.values, library)

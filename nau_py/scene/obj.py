@@ -76,8 +76,12 @@ def _read_lines(path: Path) -> list[bytes]:
     return data.replace(b"\\\n", b" ").splitlines()
 
 
-def _faces(lines: list[bytes], faces_at: list[int], states: list[tuple[int, str]],
-           counts_at: list[tuple[int, int, int]]) -> _Faces:
+def _faces(
+    lines: list[bytes],
+    faces_at: list[int],
+    states: list[tuple[int, str]],
+    counts_at: list[tuple[int, int, int]],
+) -> _Faces:
     """Fan-triangulated faces. ``states`` holds (first face, key) changes in file order."""
     corners: list[tuple[int, int, int]] = []
     owner: list[int] = []
@@ -235,6 +239,6 @@ def _mtl_line(material: ModelMaterial, words: list[str], folder: Path) -> None:
     elif keyword == "Pr":
         roughness = max(float(words[1]), 1e-4)
         material.colours["SHININESS"] = (2.0 / roughness**2 - 2.0,)
-    elif (keyword.startswith("map_") or keyword.startswith("b")) and len(words) > 1:
+    elif (keyword.startswith(("map_", "b"))) and len(words) > 1:
         unit = _BUMP if keyword.startswith("b") else _MAPS.get(keyword, _OTHER_MAP)
         material.textures[unit] = resolve(folder, words[1]).best

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nau_py.scene.mesh import F32, Group, Mesh, pad4
+from nau_py.scene.mesh import F32, F64, Group, Mesh, pad4
 
 DEFAULT_MATERIAL = "__Light Grey"
 _AXIS_MATERIALS = ("__Emission Red", "__Emission Green", "__Emission Blue")
@@ -24,7 +24,11 @@ def _mesh(
 
 def box(material: str) -> Mesh:
     """The cube -1..1 with 24 vertices, per-face normals and texture coordinates."""
-    positions, normals, uvs, tangents, indices = [], [], [], [], []
+    positions: list[F64] = []
+    normals: list[F64] = []
+    tangents: list[F64] = []
+    uvs: list[tuple[int, int]] = []
+    indices: list[int] = []
     for axis in range(3):
         for sign in (1.0, -1.0):
             normal = np.zeros(3)
@@ -48,7 +52,7 @@ def square(material: str) -> Mesh:
     position = np.stack([corners[:, 0], np.zeros(4), corners[:, 1]], axis=1).astype(np.float32)
     normal = np.tile(np.array([0, 1, 0], np.float32), (4, 1))
     tangent = np.tile(np.array([0, 0, -1], np.float32), (4, 1))
-    return _mesh(position, normal, (corners + 1) / 2, tangent, [0, 1, 2, 0, 2, 3], material)
+    return _mesh(position, normal, ((corners + 1) / 2).astype(np.float32), tangent, [0, 1, 2, 0, 2, 3], material)
 
 
 def sphere(slices: int, stacks: int, material: str) -> Mesh:
@@ -70,8 +74,10 @@ def sphere(slices: int, stacks: int, material: str) -> Mesh:
 
 def grid(divisions: int, length: float, material: str) -> Mesh:
     """(divisions + 1)² vertices in the xz plane, centred, of side ``length``."""
-    i, j = np.meshgrid(np.arange(divisions + 1), np.arange(divisions + 1), indexing="ij")
-    i, j = i.reshape(-1), j.reshape(-1)
+    rows, columns = np.meshgrid(
+        np.arange(divisions + 1), np.arange(divisions + 1), indexing="ij"
+    )
+    i, j = rows.reshape(-1), columns.reshape(-1)
     half = length / 2
     x, z = -half + i * length / divisions, half - j * length / divisions
     position = np.stack([x, np.zeros_like(x), z], axis=1).astype(np.float32)
@@ -90,5 +96,7 @@ def axis(material: str | None) -> Mesh:
     """Three lines -1..1 along x, y and z; ``material`` replaces only the first one's."""
     names = (material or _AXIS_MATERIALS[0], *_AXIS_MATERIALS[1:])
     ends = np.array([sign * np.eye(3)[k] for k in range(3) for sign in (-1, 1)])
-    groups = [Group(name, np.array([[2 * k, 2 * k + 1]], np.uint32)) for k, name in enumerate(names)]
+    groups = [
+        Group(name, np.array([[2 * k, 2 * k + 1]], np.uint32)) for k, name in enumerate(names)
+    ]
     return Mesh({"position": pad4(ends, 1.0)}, groups, "LINES")

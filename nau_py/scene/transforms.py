@@ -87,3 +87,11 @@ def orthographic(
 def to_unit_cube() -> F64:
     """Clip space to 0..1: T(0.5)·S(0.5)."""
     return translation((0.5, 0.5, 0.5)) @ scaling((0.5, 0.5, 0.5))
+
+
+def inverse(matrix: F64) -> F64:
+    """The inverse; the matrix itself where it is singular, as in Nau (9.12)."""
+    try:
+        return np.asarray(np.linalg.inv(matrix), np.float64)
+    except np.linalg.LinAlgError:
+        return matrix

@@ -31,9 +31,7 @@ class Rect:
         return int(self.x), int(self.y), int(self.width), int(self.height)
 
 
-def viewport_rect(
-    project: Project, viewport: Viewport | None, window: tuple[int, int]
-) -> Rect:
+def viewport_rect(project: Project, viewport: Viewport | None, window: tuple[int, int]) -> Rect:
     """The rectangle of a viewport in a window of ``window`` (width, height) pixels."""
     width, height = float(window[0]), float(window[1])
     if viewport is None:

@@ -24,9 +24,7 @@ SAMPLER = AttributeSet.of(
         choice("MAG_FILTER", "LINEAR", "NEAREST LINEAR", "Magnification."),
         choice("MIN_FILTER", "LINEAR", _FILTERS, "Minification; mip variant as available."),
         choice("COMPARE_MODE", "NONE", "NONE COMPARE_REF_TO_TEXTURE", "Depth comparison."),
-        choice(
-            "COMPARE_FUNC", "LEQUAL", "LEQUAL GEQUAL LESS GREATER EQUAL NOTEQUAL ALWAYS NEVER"
-        ),
+        choice("COMPARE_FUNC", "LEQUAL", "LEQUAL GEQUAL LESS GREATER EQUAL NOTEQUAL ALWAYS NEVER"),
         colour("BORDER_COLOR", (0.0, 0.0, 0.0, 0.0), "Colour outside CLAMP_TO_BORDER.", False),
         number("ID", _INT, -1, "OpenGL name.", readonly=True),
         flag("MIPMAP", False, "Whether the texture has mip levels.", readonly=True),

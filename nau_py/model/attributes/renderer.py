@@ -20,7 +20,9 @@ RENDERER = AttributeSet.of(
         matrix("PROJECTION_VIEW_MODEL", "Object to clip."),
         matrix("TS05_PVM", "World to the unit cube; contains no model matrix, as in Nau."),
         matrix("NORMAL", "Object normals to camera space.", size=3),
-        number("TEXTURE_COUNT", DataType.INT, 0, "Bit mask of bound units; 0: none.", readonly=True),
+        number(
+            "TEXTURE_COUNT", DataType.INT, 0, "Bit mask of bound units; 0: none.", readonly=True
+        ),
         number("LIGHT_COUNT", DataType.INT, 0, "Lights of the running pass.", readonly=True),
         number("FRAME_COUNT", DataType.UINT, 0, "Frames since load.", readonly=True),
         number("TIMER", DataType.FLOAT, 0.0, "Simulated time, milliseconds.", readonly=True),

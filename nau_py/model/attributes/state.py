@@ -29,8 +29,6 @@ STATE = AttributeSet.of(
         number("ORDER", DataType.INT, 0, "Drawing layer, ascending; negative is not drawn."),
         number("MIN_SAMPLE_SHADING", DataType.FLOAT, 1.0, "Fraction of samples to shade."),
         colour("BLEND_COLOR", (0.0, 0.0, 0.0, 0.0), "Constant colour of blending.", False),
-        Attribute(
-            "COLOR_MASK_B4", DataType.BVEC4, (True, True, True, True), "Channels to write."
-        ),
+        Attribute("COLOR_MASK_B4", DataType.BVEC4, (True, True, True, True), "Channels to write."),
     ],
 )

@@ -6,9 +6,38 @@ from nau_py.model.attribute import Attribute, AttributeSet, choice, flag, number
 from nau_py.model.values import DataType
 
 COLOR_FORMATS = tuple(
-    "R8 R16 R16F R32F R8I R16I R32I R8UI R16UI R32UI "
-    "RG8 RG16 RG16F RG32F RG8I RG16I RG32I RG8UI RG16UI RG32UI "
-    "RGBA RGBA16 RGBA16F RGBA32F RGBA8I RGBA16I RGBA32I RGBA8UI RGBA16UI RGBA32UI".split()
+    [
+        "R8",
+        "R16",
+        "R16F",
+        "R32F",
+        "R8I",
+        "R16I",
+        "R32I",
+        "R8UI",
+        "R16UI",
+        "R32UI",
+        "RG8",
+        "RG16",
+        "RG16F",
+        "RG32F",
+        "RG8I",
+        "RG16I",
+        "RG32I",
+        "RG8UI",
+        "RG16UI",
+        "RG32UI",
+        "RGBA",
+        "RGBA16",
+        "RGBA16F",
+        "RGBA32F",
+        "RGBA8I",
+        "RGBA16I",
+        "RGBA32I",
+        "RGBA8UI",
+        "RGBA16UI",
+        "RGBA32UI",
+    ]
 )
 DEPTH_FORMATS = (
     "DEPTH_COMPONENT16",

@@ -58,14 +58,18 @@ class Builder:
     def box(self, group, material, low: Point, high: Point, scale=1.0, frame=None) -> None:
         """An axis-aligned box, or one in the axes of `frame` (origin, right, up, out)."""
         x, y, z = zip(low, high)
-        corner = {(i, j, k): np.array([x[i], y[j], z[k]]) for i in (0, 1) for j in (0, 1)
-                  for k in (0, 1)}
+        corner = {
+            (i, j, k): np.array([x[i], y[j], z[k]]) for i in (0, 1) for j in (0, 1) for k in (0, 1)
+        }
         if frame is not None:
             corner = {key: frame(*p) for key, p in corner.items()}
         for loop in (
-            ((0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)), ((1, 0, 0), (0, 0, 0), (0, 1, 0), (1, 1, 0)),
-            ((1, 0, 1), (1, 0, 0), (1, 1, 0), (1, 1, 1)), ((0, 0, 0), (0, 0, 1), (0, 1, 1), (0, 1, 0)),
-            ((0, 1, 1), (1, 1, 1), (1, 1, 0), (0, 1, 0)), ((0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)),
+            ((0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)),
+            ((1, 0, 0), (0, 0, 0), (0, 1, 0), (1, 1, 0)),
+            ((1, 0, 1), (1, 0, 0), (1, 1, 0), (1, 1, 1)),
+            ((0, 0, 0), (0, 0, 1), (0, 1, 1), (0, 1, 0)),
+            ((0, 1, 1), (1, 1, 1), (1, 1, 0), (0, 1, 0)),
+            ((0, 0, 0), (1, 0, 0), (1, 0, 1), (0, 0, 1)),
         ):
             self.quad(group, material, *(corner[k] for k in loop), scale=scale)
 
@@ -81,8 +85,13 @@ class Builder:
                 quad, nrm, uvs = [], [], []
                 for ii, ss in ((i, s), (i, s + 1), (i + 1, s + 1), (i + 1, s)):
                     a = 2 * pi * ss / segments
-                    quad.append((centre[0] + pts[ii, 0] * sin(a), centre[1] + pts[ii, 1],
-                                 centre[2] + pts[ii, 0] * cos(a)))
+                    quad.append(
+                        (
+                            centre[0] + pts[ii, 0] * sin(a),
+                            centre[1] + pts[ii, 1],
+                            centre[2] + pts[ii, 0] * cos(a),
+                        )
+                    )
                     nrm.append((normal2[ii, 0] * sin(a), normal2[ii, 1], normal2[ii, 0] * cos(a)))
                     uvs.append((uv[0] * ss / segments, uv[1] * along[ii]))
                 if pts[i, 0] < 1e-6:
@@ -127,30 +136,49 @@ def window(b: Builder, at, wall, x0, x1, y0, y1, cell, arch=False, door=False) -
     ):
         b.quad(g, "Stone", *(at(*p) for p in loop), scale=1.0)
     # stone surround
-    for lo, hi in (((x0 - 0.14, y0, 0), (x0, y1, 0.06)), ((x1, y0, 0), (x1 + 0.14, y1, 0.06)),
-                   ((x0 - 0.2, y1, 0), (x1 + 0.2, y1 + 0.2, 0.1)),
-                   ((x0 - 0.2, y0 - 0.12, 0), (x1 + 0.2, y0, 0.14))):
+    for lo, hi in (
+        ((x0 - 0.14, y0, 0), (x0, y1, 0.06)),
+        ((x1, y0, 0), (x1 + 0.14, y1, 0.06)),
+        ((x0 - 0.2, y1, 0), (x1 + 0.2, y1 + 0.2, 0.1)),
+        ((x0 - 0.2, y0 - 0.12, 0), (x1 + 0.2, y0, 0.14)),
+    ):
         b.box("surround", "Stone", lo, hi, 1.0, at)
     # frame, mullions and glass (or a door)
     f = 0.07
-    bars = [(x0, y0, x0 + f, y1), (x1 - f, y0, x1, y1), (x0, y0, x1, y0 + f), (x0, y1 - f, x1, y1),
-            ((x0 + x1) / 2 - f / 2, y0, (x0 + x1) / 2 + f / 2, y1),
-            (x0, y0 + (y1 - y0) * 0.68, x1, y0 + (y1 - y0) * 0.68 + f)]
+    bars = [
+        (x0, y0, x0 + f, y1),
+        (x1 - f, y0, x1, y1),
+        (x0, y0, x1, y0 + f),
+        (x0, y1 - f, x1, y1),
+        ((x0 + x1) / 2 - f / 2, y0, (x0 + x1) / 2 + f / 2, y1),
+        (x0, y0 + (y1 - y0) * 0.68, x1, y0 + (y1 - y0) * 0.68 + f),
+    ]
     if door:
-        b.quad(g, "Door", at(x0, y0, depth + 0.03), at(x1, y0, depth + 0.03),
-               at(x1, y1, depth + 0.03), at(x0, y1, depth + 0.03))
+        b.quad(
+            g,
+            "Door",
+            at(x0, y0, depth + 0.03),
+            at(x1, y0, depth + 0.03),
+            at(x1, y1, depth + 0.03),
+            at(x0, y1, depth + 0.03),
+        )
         return
     for ax, ay, bx, by in bars:
         b.box("frames", "Frame", (ax, ay, depth), (bx, by, depth + 0.06), 1.0, at)
-    b.quad("windows", "Vidro", at(x0, y0, depth + 0.02), at(x1, y0, depth + 0.02),
-           at(x1, y1, depth + 0.02), at(x0, y1, depth + 0.02))
+    b.quad(
+        "windows",
+        "Vidro",
+        at(x0, y0, depth + 0.02),
+        at(x1, y0, depth + 0.02),
+        at(x1, y1, depth + 0.02),
+        at(x0, y1, depth + 0.02),
+    )
 
 
 def card(b: Builder, material, p, q, height, repeat) -> None:
     p, q = np.asarray(p, float), np.asarray(q, float)
     up = np.array([0, height, 0])
-    b.face("grilles", material, [p, q, q + up, p + up],
-           [(0, 0), (repeat, 0), (repeat, 1), (0, 1)])
+    b.face("grilles", material, [p, q, q + up, p + up], [(0, 0), (repeat, 0), (repeat, 1), (0, 1)])
 
 
 def balcony(b: Builder, at, x0, x1, y) -> None:
@@ -172,14 +200,32 @@ def balcony(b: Builder, at, x0, x1, y) -> None:
 
 def roof(b: Builder, at, x0, x1, y, depth=4.0, rise=1.9, ribs_per_metre=2.2) -> None:
     """Rows of curved tiles, as ribs that overlap."""
-    b.quad("roofs", "RoofTile", at(x0, y, 0.45), at(x1, y, 0.45), at(x1, y + rise, -depth),
-           at(x0, y + rise, -depth), scale=3)
-    b.quad("roofs", "RoofTile", at(x1, y, 0.4), at(x0, y, 0.4), at(x0, y + rise, -depth),
-           at(x1, y + rise, -depth), scale=3)
+    b.quad(
+        "roofs",
+        "RoofTile",
+        at(x0, y, 0.45),
+        at(x1, y, 0.45),
+        at(x1, y + rise, -depth),
+        at(x0, y + rise, -depth),
+        scale=3,
+    )
+    b.quad(
+        "roofs",
+        "RoofTile",
+        at(x1, y, 0.4),
+        at(x0, y, 0.4),
+        at(x0, y + rise, -depth),
+        at(x1, y + rise, -depth),
+        scale=3,
+    )
     for x, wall_side in ((x0, -1), (x1, 1)):
         gable = [at(x, y, 0.3), at(x, y, -depth), at(x, y + rise, -depth)]
-        b.face("gables", "WallWhite", gable if wall_side > 0 else gable[::-1],
-               [(0, 0), (1.4, 0), (1.4, 0.6)])
+        b.face(
+            "gables",
+            "WallWhite",
+            gable if wall_side > 0 else gable[::-1],
+            [(0, 0), (1.4, 0), (1.4, 0.6)],
+        )
     ribs, rows, arc = int((x1 - x0) * ribs_per_metre), 7, 5
     w = (x1 - x0) / ribs
     for i in range(ribs):
@@ -194,8 +240,12 @@ def roof(b: Builder, at, x0, x1, y, depth=4.0, rise=1.9, ribs_per_metre=2.2) -> 
                     base = at(0, 0, 0)
                     nrm.append(at(-cos(a), sin(a), 0.35 * sin(a)) - base)
                 nrm = [n / np.linalg.norm(n) for n in nrm]
-                uv = [((i + k / arc) / 3, j / 3), ((i + (k + 1) / arc) / 3, j / 3),
-                      ((i + (k + 1) / arc) / 3, (j + 1) / 3), ((i + k / arc) / 3, (j + 1) / 3)]
+                uv = [
+                    ((i + k / arc) / 3, j / 3),
+                    ((i + (k + 1) / arc) / 3, j / 3),
+                    ((i + (k + 1) / arc) / 3, (j + 1) / 3),
+                    ((i + k / arc) / 3, (j + 1) / 3),
+                ]
                 b.face("roofs", "RoofTile", pts, uv, nrm)
 
 
@@ -214,11 +264,26 @@ def building(b: Builder, rng, at, x0, bays, wall) -> float:
             if level == 0:
                 wide = 1.05 if i == door else 1.15
                 bottom = 0.02 if i == door else 0.55
-                window(b, at, "StoneWall", mid - wide, mid + wide, bottom, 3.2, (a, c, y0, y1),
-                       door=i == door)
+                window(
+                    b,
+                    at,
+                    "StoneWall",
+                    mid - wide,
+                    mid + wide,
+                    bottom,
+                    3.2,
+                    (a, c, y0, y1),
+                    door=i == door,
+                )
                 if i == door:
-                    card(b, "GradePortao", at(mid - wide, 2.3, -0.1), at(mid + wide, 2.3, -0.1),
-                         0.9, 2)
+                    card(
+                        b,
+                        "GradePortao",
+                        at(mid - wide, 2.3, -0.1),
+                        at(mid + wide, 2.3, -0.1),
+                        0.9,
+                        2,
+                    )
             else:
                 tall = level == 1
                 low = y0 + (0.12 if tall else 0.9)
@@ -230,15 +295,31 @@ def building(b: Builder, rng, at, x0, bays, wall) -> float:
     b.box("cornices", "Stone", (x0 - 0.05, top, -0.1), (x1 + 0.05, top + 0.3, 0.38), 1.0, at)
     for x in (x0, x1 - 0.35):
         b.box("corners", "Stone", (x, 0, 0), (x + 0.35, top, 0.07), 1.0, at)
-    b.quad("sides", wall, at(x0, 0, -4.0), at(x0, 0, 0), at(x0, top + 0.3, 0),
-           at(x0, top + 0.3, -4.0), scale=3)
-    b.quad("sides", wall, at(x1, 0, 0), at(x1, 0, -4.0), at(x1, top + 0.3, -4.0),
-           at(x1, top + 0.3, 0), scale=3)
+    b.quad(
+        "sides",
+        wall,
+        at(x0, 0, -4.0),
+        at(x0, 0, 0),
+        at(x0, top + 0.3, 0),
+        at(x0, top + 0.3, -4.0),
+        scale=3,
+    )
+    b.quad(
+        "sides",
+        wall,
+        at(x1, 0, 0),
+        at(x1, 0, -4.0),
+        at(x1, top + 0.3, -4.0),
+        at(x1, top + 0.3, 0),
+        scale=3,
+    )
     roof(b, at, x0, x1, top + 0.3)
     if rng.random() < 0.7:
         cx = x0 + (x1 - x0) * (0.25 + 0.5 * rng.random())
         b.box("chimneys", wall, (cx, top, -2.6), (cx + 0.9, top + 3.0, -1.9), 3.0, at)
-        b.box("chimneys", "Stone", (cx - 0.1, top + 3.0, -2.7), (cx + 1.0, top + 3.15, -1.8), 1.0, at)
+        b.box(
+            "chimneys", "Stone", (cx - 0.1, top + 3.0, -2.7), (cx + 1.0, top + 3.15, -1.8), 1.0, at
+        )
     return x1
 
 
@@ -260,8 +341,15 @@ def smooth(points, steps=6):
     for i in range(1, len(p) - 2):
         for t in np.linspace(0, 1, steps, endpoint=False):
             a, c, d, e = p[i - 1], p[i], p[i + 1], p[i + 2]
-            out.append(0.5 * (2 * c + (d - a) * t + (2 * a - 5 * c + 4 * d - e) * t**2
-                              + (3 * c - a - 3 * d + e) * t**3))
+            out.append(
+                0.5
+                * (
+                    2 * c
+                    + (d - a) * t
+                    + (2 * a - 5 * c + 4 * d - e) * t**2
+                    + (3 * c - a - 3 * d + e) * t**3
+                )
+            )
     return [*out, p[-2]]
 
 
@@ -270,29 +358,67 @@ def fountain(b: Builder) -> None:
         b.lathe("steps", "Stone", [(r, y), (r, y + 0.17)], segments=8, uv=(16, 1))
         inner = (4.1, 3.6, 3.1)[i]
         b.lathe("steps", "Stone", [(r, y + 0.17), (inner, y + 0.17)], segments=8, uv=(16, 1))
-    b.lathe("basin", "Granite", smooth([(2.9, 0.51), (3.0, 0.6), (2.8, 0.75), (2.85, 1.05),
-                                        (3.05, 1.2), (2.95, 1.28)], 5), segments=72, uv=(12, 1))
+    b.lathe(
+        "basin",
+        "Granite",
+        smooth([(2.9, 0.51), (3.0, 0.6), (2.8, 0.75), (2.85, 1.05), (3.05, 1.2), (2.95, 1.28)], 5),
+        segments=72,
+        uv=(12, 1),
+    )
     b.lathe("basin", "Granite", [(2.95, 1.28), (2.65, 1.28)], segments=72, uv=(12, 1))
     b.lathe("basin", "Granite", [(2.65, 1.28), (2.6, 0.6)], segments=72, uv=(12, 1))
     b.lathe("water", "Water", [(2.62, 1.1), (0.4, 1.1)], segments=48, uv=(2, 1))
-    column = smooth([(0.75, 0.51), (0.78, 0.9), (0.45, 1.3), (0.38, 1.9), (0.5, 2.3), (0.34, 2.6)], 5)
+    column = smooth(
+        [(0.75, 0.51), (0.78, 0.9), (0.45, 1.3), (0.38, 1.9), (0.5, 2.3), (0.34, 2.6)], 5
+    )
     b.lathe("column", "Granite", column, segments=56, uv=(4, 1))
     bowl = smooth([(0.34, 2.6), (0.9, 2.72), (1.5, 2.98), (1.62, 3.2), (1.55, 3.24)], 6)
     b.lathe("bowl", "Granite", bowl, segments=72, uv=(8, 1))
     b.lathe("bowl", "Granite", [(1.55, 3.24), (1.42, 3.18), (0.3, 3.06)], segments=72, uv=(8, 1))
     b.lathe("water2", "Water", [(1.45, 3.19), (0.25, 3.19)], segments=48, uv=(2, 1))
-    upper = smooth([(0.3, 3.0), (0.34, 3.3), (0.2, 3.7), (0.17, 4.2), (0.26, 4.45), (0.7, 4.62),
-                    (0.75, 4.75), (0.3, 4.78), (0.16, 5.0), (0.28, 5.3), (0.2, 5.6), (0.0, 5.95)], 5)
+    upper = smooth(
+        [
+            (0.3, 3.0),
+            (0.34, 3.3),
+            (0.2, 3.7),
+            (0.17, 4.2),
+            (0.26, 4.45),
+            (0.7, 4.62),
+            (0.75, 4.75),
+            (0.3, 4.78),
+            (0.16, 5.0),
+            (0.28, 5.3),
+            (0.2, 5.6),
+            (0.0, 5.95),
+        ],
+        5,
+    )
     b.lathe("upper", "Granite", upper, segments=56, uv=(4, 1))
 
 
 def lamp(b: Builder, x, z) -> None:
-    post = smooth([(0.22, 0), (0.22, 0.3), (0.12, 0.45), (0.08, 0.8), (0.055, 2.2), (0.05, 3.3),
-                   (0.1, 3.4), (0.04, 3.5)], 4)
+    post = smooth(
+        [
+            (0.22, 0),
+            (0.22, 0.3),
+            (0.12, 0.45),
+            (0.08, 0.8),
+            (0.055, 2.2),
+            (0.05, 3.3),
+            (0.1, 3.4),
+            (0.04, 3.5),
+        ],
+        4,
+    )
     b.lathe("lamps", "Iron", post, (x, 0, z), 14)
     b.lathe("lamps", "LampGlass", [(0.1, 3.5), (0.21, 3.95)], (x, 0, z), 6)
-    b.lathe("lamps", "Iron", smooth([(0.25, 3.95), (0.2, 4.08), (0.05, 4.2), (0.0, 4.4)], 4),
-            (x, 0, z), 12)
+    b.lathe(
+        "lamps",
+        "Iron",
+        smooth([(0.25, 3.95), (0.2, 4.08), (0.05, 4.2), (0.0, 4.4)], 4),
+        (x, 0, z),
+        12,
+    )
 
 
 def bench(b: Builder, x, z, angle) -> None:
@@ -305,20 +431,57 @@ def bench(b: Builder, x, z, angle) -> None:
         b.box("benches", "Iron", (u, 0, -0.22), (u + 0.1, 0.42, 0.22), 1.0, at)
         b.box("benches", "Iron", (u, 0.42, -0.26), (u + 0.1, 0.95, -0.2), 1.0, at)
     for k in range(4):
-        b.box("benches", "Wood", (-0.9, 0.42, -0.2 + k * 0.11), (0.9, 0.46, -0.11 + k * 0.11), 1, at)
+        b.box(
+            "benches", "Wood", (-0.9, 0.42, -0.2 + k * 0.11), (0.9, 0.46, -0.11 + k * 0.11), 1, at
+        )
     for k in range(3):
-        b.box("benches", "Wood", (-0.9, 0.52 + k * 0.14, -0.2), (0.9, 0.62 + k * 0.14, -0.17), 1, at)
+        b.box(
+            "benches", "Wood", (-0.9, 0.52 + k * 0.14, -0.2), (0.9, 0.62 + k * 0.14, -0.17), 1, at
+        )
 
 
 def icosphere(levels: int):
     t = (1 + 5**0.5) / 2
-    v = [np.array(p, float) for p in (
-        (-1, t, 0), (1, t, 0), (-1, -t, 0), (1, -t, 0), (0, -1, t), (0, 1, t), (0, -1, -t),
-        (0, 1, -t), (t, 0, -1), (t, 0, 1), (-t, 0, -1), (-t, 0, 1))]
+    v = [
+        np.array(p, float)
+        for p in (
+            (-1, t, 0),
+            (1, t, 0),
+            (-1, -t, 0),
+            (1, -t, 0),
+            (0, -1, t),
+            (0, 1, t),
+            (0, -1, -t),
+            (0, 1, -t),
+            (t, 0, -1),
+            (t, 0, 1),
+            (-t, 0, -1),
+            (-t, 0, 1),
+        )
+    ]
     v = [p / np.linalg.norm(p) for p in v]
-    f = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
-         (11, 10, 2), (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9),
-         (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1)]
+    f = [
+        (0, 11, 5),
+        (0, 5, 1),
+        (0, 1, 7),
+        (0, 7, 10),
+        (0, 10, 11),
+        (1, 5, 9),
+        (5, 11, 4),
+        (11, 10, 2),
+        (10, 7, 6),
+        (7, 1, 8),
+        (3, 9, 4),
+        (3, 4, 2),
+        (3, 2, 6),
+        (3, 6, 8),
+        (3, 8, 9),
+        (4, 9, 5),
+        (2, 4, 11),
+        (6, 2, 10),
+        (8, 6, 7),
+        (9, 8, 1),
+    ]
     for _ in range(levels):
         middle: dict[tuple[int, int], int] = {}
         new = []
@@ -338,16 +501,24 @@ def icosphere(levels: int):
 
 def tree(b: Builder, rng, x, z) -> None:
     h = 2.2 + rng.random()
-    b.lathe("trees", "Bark", smooth([(0.3, 0), (0.2, 0.4), (0.16, h), (0.1, h + 1.2)], 3),
-            (x, 0, z), 12)
+    b.lathe(
+        "trees", "Bark", smooth([(0.3, 0), (0.2, 0.4), (0.16, h), (0.1, h + 1.2)], 3), (x, 0, z), 12
+    )
     v, f = icosphere(2)
     for k in range(7):
         a = 2 * pi * k / 6
         spread = 0.0 if k == 6 else 1.0 + 0.3 * rng.random()
-        centre = np.array([x + spread * cos(a), h + 1.4 + (1.1 if k == 6 else 0.5 * rng.random()),
-                           z + spread * sin(a)])
+        centre = np.array(
+            [
+                x + spread * cos(a),
+                h + 1.4 + (1.1 if k == 6 else 0.5 * rng.random()),
+                z + spread * sin(a),
+            ]
+        )
         radius = 1.05 + 0.4 * rng.random()
-        bump = 1 + 0.13 * np.sin(v @ rng.normal(size=(3, 4)) * 4 + rng.random(4) * 6).sum(axis=1) / 2
+        bump = (
+            1 + 0.13 * np.sin(v @ rng.normal(size=(3, 4)) * 4 + rng.random(4) * 6).sum(axis=1) / 2
+        )
         p = centre + v * (radius * bump)[:, None] * np.array([1, 0.85, 1])
         uv = np.stack([np.arctan2(v[:, 0], v[:, 2]) / pi * 2, v[:, 1] * 2], axis=1)
         for tri in f:
@@ -362,8 +533,13 @@ def ground(b: Builder, rng, half_x, half_z, cells=64) -> None:
     for i in range(cells):
         for j in range(cells):
             loop = ((i, j), (i, j + 1), (i + 1, j + 1), (i + 1, j))
-            b.face("ground", "Paving", [(xs[a], y[a, c], zs[c]) for a, c in loop],
-                   [(xs[a] / 2.5, zs[c] / 2.5) for a, c in loop], [(0, 1, 0)] * 4)
+            b.face(
+                "ground",
+                "Paving",
+                [(xs[a], y[a, c], zs[c]) for a, c in loop],
+                [(xs[a] / 2.5, zs[c] / 2.5) for a, c in loop],
+                [(0, 1, 0)] * 4,
+            )
 
 
 def noise(rng, size, octaves, base=4):
@@ -409,7 +585,9 @@ def grille(name, ornate, seed_shift) -> None:
         d.line([(x, 0), (x, n)], fill=255, width=w)
         for y in (0.1, 0.9):
             r = n * 0.05
-            d.ellipse([x - n / 8 - r, n * y - r, x - n / 8 + r, n * y + r], outline=255, width=w * 3 // 4)
+            d.ellipse(
+                [x - n / 8 - r, n * y - r, x - n / 8 + r, n * y + r], outline=255, width=w * 3 // 4
+            )
     for i in range(4 if ornate else 2):
         cx, cy = n * (i + 0.5) / (4 if ornate else 2), n * 0.5
         for sign in (-1, 1):
@@ -418,8 +596,12 @@ def grille(name, ornate, seed_shift) -> None:
                 for t in np.linspace(0.0, 1.0, 60):
                     a = turn * (1.25 * 2 * pi * t) + seed_shift
                     r = n * (0.012 + 0.085 * t)
-                    pts.append((cx + sign * turn * r * cos(a) + sign * n * 0.03,
-                                cy + turn * n * 0.17 + r * sin(a)))
+                    pts.append(
+                        (
+                            cx + sign * turn * r * cos(a) + sign * n * 0.03,
+                            cy + turn * n * 0.17 + r * sin(a),
+                        )
+                    )
                 d.line(pts, fill=255, width=w * 4 // 5, joint="curve")
         r = n * 0.045
         d.ellipse([cx - r, cy - r, cx + r, cy + r], outline=255, width=w)
@@ -455,8 +637,10 @@ def textures(rng) -> None:
     grain = (np.sin(grain * 30 + x[:256, :256] / 6) + 1) / 2
     save("wood.jpg", tint(grain, (0.45, 0.29, 0.17), 0.2))
     save("bark.jpg", tint(grain.T, (0.33, 0.26, 0.2), 0.3))
-    save("leaves.jpg", tint(0.5 * noise(rng, 256, 6, 16) + 0.5 * rng.random((256, 256)),
-                            (0.26, 0.42, 0.16), 0.55))
+    save(
+        "leaves.jpg",
+        tint(0.5 * noise(rng, 256, 6, 16) + 0.5 * rng.random((256, 256)), (0.26, 0.42, 0.16), 0.55),
+    )
     save("water.jpg", tint(noise(rng, 256, 5, 8), (0.30, 0.42, 0.46), 0.18))
     door = tint(grain, (0.16, 0.30, 0.22), 0.15)
     for x0 in (18, 138):
@@ -518,7 +702,14 @@ def main() -> None:
     for k in range(8):
         a = 2 * pi * (k + 0.5) / 8
         bench(b, 7.2 * sin(a), 7.2 * cos(a), a + pi)
-    for x, z in ((-13.5, -9.5), (13.5, -9.5), (-13.5, 9.5), (13.5, 9.5), (-13.5, -4.5), (13.5, 4.5)):
+    for x, z in (
+        (-13.5, -9.5),
+        (13.5, -9.5),
+        (-13.5, 9.5),
+        (13.5, 9.5),
+        (-13.5, -4.5),
+        (13.5, 4.5),
+    ):
         tree(b, rng, x, z)
     b.write(HERE / "plaza.obj")
     materials()

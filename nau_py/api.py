@@ -1,0 +1,43 @@
+"""The functions behind the public names: load, lint, plan."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from nau_py.diagnostic import Diagnostic
+from nau_py.model.linked import Project
+
+if TYPE_CHECKING:
+    from nau_py.graph import Plan
+
+
+def load(path: str | Path) -> Project:
+    """Read a project file, XML or YAML, with its material libraries.
+
+    Never raises for what the file says: :func:`lint` reports it.
+    """
+    from nau_py.formats import load_project
+
+    return load_project(path)
+
+
+def lint(project: Project) -> list[Diagnostic]:
+    """Every finding about ``project``, in file and line order. Executes nothing of it."""
+    from nau_py.lint.engine import lint as run
+    from nau_py.passes import pass_classes
+    from nau_py.scene.names import default_material_names
+
+    return run(project, pass_classes(), default_material_names(project))
+
+
+def plan(project: Project, pipeline: str | None = None) -> Plan:
+    """The plan of a pipeline (default: the project's own). Needs no GL context.
+
+    Raises :class:`nau_py.ProjectError` for a pipeline that does not exist.
+    """
+    from nau_py.graph import make_plan
+    from nau_py.passes import pass_classes
+    from nau_py.run.choose import choose_pipeline
+
+    return make_plan(project, choose_pipeline(project, pipeline), pass_classes())

@@ -1,0 +1,76 @@
+"""``nau-fmt``: write a project or library as clean XML or YAML."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from nau_py.cli.common import FAILED, existing, guarded, say
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+
+class Style(StrEnum):
+    """File formats."""
+
+    XML = "xml"
+    YAML = "yaml"
+
+
+@app.command()
+def fmt(
+    project: Annotated[Path, typer.Argument(help="Project file or material library.")],
+    to: Annotated[Style | None, typer.Option(help="Format; default the file's own.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="File; else stdout.")
+    ] = None,
+    check: Annotated[bool, typer.Option(help="Only say whether the file is formatted.")] = False,
+    debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
+) -> None:
+    """Format a file. Comments are not kept."""
+    from nau_py.api import lint
+    from nau_py.formats.load import YAML_SUFFIXES, is_library, load_library, load_project
+    from nau_py.formats.write import format_node
+
+    path = existing(project)
+    library = is_library(path)
+    loaded = load_library(path) if library else load_project(path)
+    broken = [d for d in lint(loaded) if d.rule in ("X001", "X002")]
+    if broken:
+        say(broken, loaded.sources)
+        raise typer.Exit(FAILED)
+    own = Style.YAML if path.suffix.lower() in YAML_SUFFIXES else Style.XML
+    node = loaded.libraries[-1] if library else loaded.file
+    text = format_node(node, loaded.registry, (to or own).value)
+    if check:
+        same = loaded.sources[str(path)] == text
+        if not same:
+            sys.stderr.write(f"{path}: not formatted; run nau-fmt {path} -o {path}\n")
+        raise typer.Exit(0 if same else FAILED)
+
+    def work() -> int:
+        from nau_py.diagnostic import error
+        from nau_py.errors import OutputError
+        from nau_py.files import write_text
+        from nau_py.model.location import NOWHERE
+
+        if output is None:
+            sys.stdout.write(text)
+            return 0
+        try:
+            write_text(output, text)
+        except OSError as problem:
+            message = f"output '{output}' cannot be written: {problem.strerror}"
+            raise OutputError(error("E002", NOWHERE, message)) from None
+        return 0
+
+    raise typer.Exit(guarded(work, loaded.sources, debug))
+
+
+def main() -> None:
+    """Entry point of ``nau-fmt``."""
+    app()

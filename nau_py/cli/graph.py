@@ -1,0 +1,69 @@
+"""``nau-graph``: the passes of a pipeline and what they hand to each other."""
+
+from __future__ import annotations
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from nau_py.cli.common import existing, guarded, say
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+
+class Style(StrEnum):
+    """Output formats."""
+
+    SVG = "svg"
+    DOT = "dot"
+    MERMAID = "mermaid"
+    JSON = "json"
+
+
+@app.command()
+def graph(
+    project: Annotated[Path, typer.Argument(help="Project file, XML or YAML.")],
+    pipeline: Annotated[str | None, typer.Option(help="Pipeline; default the project's.")] = None,
+    format: Annotated[Style, typer.Option(help="Output format.")] = Style.SVG,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="File; else stdout.")
+    ] = None,
+    debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
+) -> None:
+    """Draw a pipeline, without a GL context."""
+    import nau_py
+    from nau_py.cli.common import FAILED
+    from nau_py.graph.export import export
+
+    loaded = nau_py.load(existing(project))
+    broken = [d for d in nau_py.lint(loaded) if d.rule in ("X001", "X002")]
+    if broken:
+        say(broken, loaded.sources)
+        raise typer.Exit(FAILED)
+
+    def work() -> int:
+        from nau_py.diagnostic import error
+        from nau_py.errors import OutputError
+        from nau_py.files import write_text
+        from nau_py.model.location import NOWHERE
+
+        text = export(nau_py.plan(loaded, pipeline), format.value)
+        if output is None:
+            sys.stdout.write(text)
+            return 0
+        try:
+            write_text(output, text)
+        except OSError as problem:
+            message = f"output '{output}' cannot be written: {problem.strerror}"
+            raise OutputError(error("E002", NOWHERE, message)) from None
+        return 0
+
+    raise typer.Exit(guarded(work, loaded.sources, debug))
+
+
+def main() -> None:
+    """Entry point of ``nau-graph``."""
+    app()

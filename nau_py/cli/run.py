@@ -1,0 +1,151 @@
+"""``nau-run``: render a project."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from nau_py.cli.common import USAGE, existing, guarded, say
+from nau_py.diagnostic import Severity
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+
+def _size(text: str | None) -> tuple[int, int] | None:
+    if text is None:
+        return None
+    match = re.fullmatch(r"(\d+)[xX](\d+)", text)
+    if match is None or 0 in (int(match[1]), int(match[2])):
+        raise typer.BadParameter(f"'{text}' is no size; write WIDTHxHEIGHT, as in 512x512")
+    return int(match[1]), int(match[2])
+
+
+def _frames(text: str) -> tuple[int, int]:
+    match = re.fullmatch(r"(\d+)(?::(\d+))?", text)
+    if match is None:
+        raise typer.BadParameter(f"'{text}' is no range of frames; write A:B, as in 0:9")
+    first = int(match[1])
+    last = int(match[2]) if match[2] else first
+    if last < first:
+        raise typer.BadParameter(f"'{text}': the last frame comes before the first")
+    return first, last
+
+
+def _numbered(path: Path) -> bool:
+    return re.search(r"%0?\d*d", path.name) is not None
+
+
+@app.command()
+def run(
+    project: Annotated[Path | None, typer.Argument(help="Project file, XML or YAML.")] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="OUT.png, .exr or .npy; %04d numbers.")
+    ] = None,
+    pipeline: Annotated[str | None, typer.Option(help="Pipeline; default the project's.")] = None,
+    size: Annotated[str | None, typer.Option(help="Window, WxH pixels.")] = None,
+    frames: Annotated[str, typer.Option(help="Frames A:B, both included.")] = "0",
+    time_step: Annotated[float, typer.Option(help="Seconds from frame to frame.")] = 0.02,
+    spp: Annotated[int | None, typer.Option(min=1, help="Samples a pixel of rays.")] = None,
+    seed: Annotated[int, typer.Option(help="Seed of random numbers.")] = 0,
+    threads: Annotated[int, typer.Option(min=0, help="Threads; 0: one a core.")] = 0,
+    targets: Annotated[Path | None, typer.Option(help="Folder for every target.")] = None,
+    report: Annotated[Path | None, typer.Option(help="JSON report.")] = None,
+    explain: Annotated[bool, typer.Option(help="Say why passes are left out.")] = False,
+    allow_programs: Annotated[
+        list[Path] | None, typer.Option(help="Folder to load ray programs from.")
+    ] = None,
+    no_programs: Annotated[bool, typer.Option(help="Refuse all ray programs of files.")] = False,
+    quiet: Annotated[bool, typer.Option(help="No table, no progress, no warnings.")] = False,
+    debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
+    doctor: Annotated[bool, typer.Option(help="Say what this machine has and lacks.")] = False,
+) -> None:
+    """Render a project to a picture."""
+    if doctor:
+        from nau_py.cli.doctor import examine
+
+        raise typer.Exit(examine())
+    if project is None:
+        sys.stderr.write("Missing argument 'PROJECT'. Try 'nau-run --help'.\n")
+        raise typer.Exit(USAGE)
+    existing(project)
+    window, (first, last) = _size(size), _frames(frames)
+    import nau_py
+    from nau_py.cli.progress import progress_bar
+    from nau_py.passes.frame import RunOptions
+
+    loaded = nau_py.load(project)
+    options = RunOptions(
+        spp, seed, threads, tuple(str(p) for p in allow_programs or ()), no_programs
+    )
+
+    def work() -> int:
+        from nau_py.run.output import check_output
+        from nau_py.run.renderer import Renderer
+
+        if output is not None:
+            check_output(output)
+        with progress_bar(quiet) as progress:
+            renderer = Renderer(
+                loaded,
+                pipeline,
+                size=window,
+                options=options,
+                time_step=time_step,
+                keep_targets=targets is not None,
+                progress=progress,
+            )
+            reports = _render(renderer, output, targets, first, last)
+        if not quiet:
+            say((d for d in renderer.diagnostics if d.severity is Severity.WARNING), loaded.sources)
+        _finish(reports, report, quiet, explain)
+        return 0
+
+    raise typer.Exit(guarded(work, loaded.sources, debug))
+
+
+def _render(
+    renderer: Any, output: Path | None, targets: Path | None, first: int, last: int
+) -> list[dict[str, Any]]:
+    """Render frames ``first`` to ``last``, writing what is asked for."""
+    from nau_py.run.output import write_image, write_targets
+
+    reports = []
+    for index in range(first, last + 1):
+        frame = renderer.render(index)
+        reports.append(frame.report)
+        if output is not None and _numbered(output):
+            write_image(output.with_name(output.name % index), frame.image)
+        elif output is not None and index == last:
+            write_image(output, frame.image)
+        if targets is not None and index == last:
+            write_targets(targets, frame.targets)
+    return reports
+
+
+def _finish(reports: list[dict[str, Any]], path: Path | None, quiet: bool, explain: bool) -> None:
+    from nau_py.cli.table import print_table
+    from nau_py.diagnostic import error
+    from nau_py.errors import OutputError
+    from nau_py.files import write_text
+    from nau_py.model.location import NOWHERE
+    from nau_py.run.report import joined
+
+    whole = joined(reports)
+    if path is not None:
+        try:
+            write_text(path, json.dumps(whole, indent=2) + "\n")
+        except OSError as problem:
+            message = f"report '{path}' cannot be written: {problem.strerror}"
+            raise OutputError(error("E002", NOWHERE, message)) from None
+    if not quiet:
+        print_table(whole, explain)
+
+
+def main() -> None:
+    """Entry point of ``nau-run``."""
+    app()

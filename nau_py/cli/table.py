@@ -1,0 +1,62 @@
+"""The table after a run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+
+def _count(number: int) -> str:
+    return f"{number:,}" if number else ""
+
+
+def print_table(report: dict[str, Any], explain: bool) -> None:
+    """Print the last frame's passes: status, time, pixels, rays by kind, rays avoided."""
+    console = Console(width=None if Console().is_terminal else 140)
+    frame = report["frames"][-1]
+    title = f"{report['project']}: {report['pipeline']}, frame {frame['index']}"
+    table = Table(title=title, title_justify="left")
+    table.add_column("pass")
+    table.add_column("class")
+    table.add_column("status")
+    for name in ("ms", "pixels"):
+        table.add_column(name, justify="right")
+    table.add_column("rays by kind")
+    for name in ("rays avoided", "est. error"):
+        table.add_column(name, justify="right")
+    for item in frame["passes"]:
+        ran = item["status"] == "run"
+        rays = ", ".join(f"{kind} {count:,}" for kind, count in item["rays"].items())
+        error = item.get("est_error")
+        table.add_row(
+            item["name"],
+            item["class"],
+            "run" if ran else "left out",
+            f"{item['ms']:,.1f}" if ran else "",
+            _count(item["pixels"]),
+            rays,
+            _count(item["rays_avoided"]),
+            f"{error:.4f}" if error is not None else "",
+        )
+    table.add_section()
+    total = sum(report["totals"]["rays"].values())
+    table.add_row(
+        "total",
+        "",
+        "",
+        f"{frame['ms']:,.1f}",
+        "",
+        f"{total:,} rays" if total else "",
+        _count(report["totals"]["rays_avoided"]),
+        "",
+    )
+    console.print(table)
+    if report["nonfinite"]:
+        console.print(f"{report['nonfinite']:,} samples were not finite")
+    for item in frame["passes"]:
+        for note in item.get("notes", []):
+            console.print(f"{item['name']}: {note}")
+        if explain and item["status"] != "run":
+            console.print(f"{item['name']} is left out: {item['reason']}")

@@ -1,0 +1,136 @@
+"""P: what passes need."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from nau_py.diagnostic import Diagnostic, listing, nearest
+from nau_py.lint.rule import ERROR, WARNING, Facts, check, rule
+from nau_py.model.linked import Project
+from nau_py.model.pass_classes import PASS_CLASSES, PLUGIN_CLASSES, ComputePass
+from nau_py.model.target import RenderTarget
+
+P001 = rule(
+    "P001",
+    ERROR,
+    "Unknown pass class",
+    "No pass class has that name.",
+    "<pass name='a' class='quads'>",
+    "<pass name='a' class='quad'>",
+)
+P002 = rule(
+    "P002",
+    ERROR,
+    "Pass class not supported",
+    "Nau or one of its plug-ins has the class, this version of nau_py does not.",
+    "<pass name='a' class='mesh'>",
+    "<pass name='a' class='default'>",
+)
+P003 = rule(
+    "P003",
+    ERROR,
+    "Pass lacks what its class needs",
+    "A compute pass needs a material and its work groups, a depth map a light and a target.",
+    "<pass name='a' class='compute'/>",
+    "<pass name='a' class='compute'><material name='m' fromLibrary='L' dimX='8'/></pass>",
+)
+P004 = rule(
+    "P004",
+    ERROR,
+    "Render target without pixels",
+    "SIZE is required; both numbers must be above 0.",
+    "<renderTarget name='r'/>",
+    "<renderTarget name='r'><SIZE width='512' height='512'/>",
+)
+P005 = rule(
+    "P005",
+    WARNING,
+    "Attachment of more than 8 colours",
+    "OpenGL promises only eight colour targets.",
+    "nine <color/> elements",
+    "up to eight",
+)
+
+
+@check
+def classes(facts: Facts) -> Iterator[Diagnostic]:
+    """Pass classes that do not exist, or not here."""
+    for pipeline in facts.project.pipelines:
+        for pass_ in pipeline.passes:
+            name = pass_.pass_class
+            if name in facts.contracts:
+                continue
+            known = list(facts.contracts)
+            if name in PASS_CLASSES or name in PLUGIN_CLASSES:
+                yield P002.at(
+                    pass_.where("class"),
+                    f"pass '{pass_.name}': class '{name}' is not supported by this version; "
+                    f"supported are {listing(known)}",
+                )
+            else:
+                yield P001.at(
+                    pass_.where("class"),
+                    f"pass '{pass_.name}': class '{name}' is unknown; there is "
+                    f"{listing(known)}{nearest(name, known)}",
+                )
+
+
+@check
+def needs(facts: Facts) -> Iterator[Diagnostic]:
+    """What compute and depthmap passes cannot do without."""
+    for pipeline in facts.project.pipelines:
+        for pass_ in pipeline.passes:
+            if isinstance(pass_, ComputePass):
+                yield from _compute(pass_)
+            elif pass_.pass_class == "depthmap":
+                if not pass_.lights:
+                    yield P003.at(pass_.location, f"depthmap pass '{pass_.name}' needs a <light>")
+                if pass_.renderTarget is None:
+                    yield P003.at(
+                        pass_.location, f"depthmap pass '{pass_.name}' needs a <renderTarget>"
+                    )
+
+
+def _compute(pass_: ComputePass) -> Iterator[Diagnostic]:
+    material = pass_.material
+    if material is None:
+        yield P003.at(pass_.location, f"compute pass '{pass_.name}' needs a <material>")
+        return
+    for axis in "XYZ":
+        given, source = getattr(material, f"dim{axis}"), getattr(material, f"buffer{axis}")
+        offset = getattr(material, f"offset{axis}")
+        label = f"compute pass '{pass_.name}'"
+        if given is not None and source is not None:
+            message = f"{label}: 'dim{axis}' and 'buffer{axis}' exclude each other"
+            yield P003.at(material.where(f"buffer{axis}"), message)
+        if source is not None and offset is None:
+            message = f"{label}: 'buffer{axis}' needs 'offset{axis}'"
+            yield P003.at(material.where(f"buffer{axis}"), message)
+        unset = given is None and source is None and f"dim{axis}" not in material.unknown_attributes
+        if axis == "X" and unset and f"DIM_{axis}" not in pass_.settings:
+            yield P003.at(material.location, f"{label}: <material> needs 'dimX' or 'bufferX'")
+
+
+def target_size(project: Project, target: RenderTarget) -> tuple[int, int]:
+    """Width and height that the file gives to a render target."""
+    width, height = project.value(target, "RENDER_TARGET", "SIZE")
+    return int(width), int(height)
+
+
+@check
+def targets(facts: Facts) -> Iterator[Diagnostic]:
+    """Render targets that cannot be made."""
+    for library in facts.project.libraries[1:]:
+        for target in library.renderTargets:
+            width, height = target_size(facts.project, target)
+            if width < 1 or height < 1:
+                yield P004.at(
+                    target.location,
+                    f"render target '{target.name}': SIZE is {width} x {height}; "
+                    "both must be above 0",
+                )
+            if len(target.colors) > 8:
+                yield P005.at(
+                    target.location,
+                    f"render target '{target.name}' has {len(target.colors)} colour targets",
+                )

@@ -1,0 +1,253 @@
+"""T: raytrace passes: how many, their mask, programs and ray types."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+from nau_py.diagnostic import Diagnostic, listing, nearest
+from nau_py.graph.dependencies import build
+from nau_py.graph.resource import Resource
+from nau_py.lint.rule import ERROR, WARNING, Facts, check, rule
+from nau_py.model.builtins import BUILTIN_PROGRAMS, EXCEPTION, RAY_GENERATION
+from nau_py.model.linked import Project
+from nau_py.model.pass_classes import RAYTRACE_CLASSES
+from nau_py.model.program_source import stand_in, strip_decoration
+from nau_py.model.raytrace import BUILTIN, Program, RaytracePass
+from nau_py.paths import resolve, similar
+
+T001 = rule(
+    "T001",
+    ERROR,
+    "More than one raytrace pass",
+    "Nau's integration allows one raytrace pass a project, in whichever pipeline. "
+    "`<project raytracePasses='many'>` lifts the limit for nau_py.",
+    "two passes of class raytrace",
+    "one, or <project raytracePasses='many' …>",
+)
+T002 = rule(
+    "T002",
+    ERROR,
+    "Mask that nothing writes",
+    "No earlier pass of the pipeline writes the texture that selects the pixels, so nothing "
+    "would be traced.",
+    "<buffer var='mask' texture='L::position'/> before the pass that draws it",
+    "let a pass draw into the mask's render target first",
+)
+T003 = rule(
+    "T003",
+    ERROR,
+    "Program file not found",
+    "The file of a ray program does not exist.",
+    "file='programs/glas.py'",
+    "file='programs/glass.py'",
+)
+T004 = rule(
+    "T004",
+    ERROR,
+    "Procedure not found",
+    "The program file defines no function of that name.",
+    "proc='shad'",
+    "proc='shade'",
+)
+T005 = rule(
+    "T005",
+    ERROR,
+    "Compiled program without a Python counterpart",
+    "An OptiX `.ptx` runs only where a Python file of the same name stands beside it.",
+    "file='x.ptx' alone",
+    "file='x.ptx' with x.py beside it",
+)
+T006 = rule(
+    "T006",
+    ERROR,
+    "Unknown built-in program",
+    "There is no built-in program of that name, or it is of another kind.",
+    "file='builtin' proc='miror'",
+    "file='builtin' proc='mirror'",
+)
+T007 = rule(
+    "T007",
+    WARNING,
+    "Undeclared ray type",
+    "The pass declares its ray types, and this is none of them; Nau would use the first one.",
+    "<rayType name='Radiance'> with only Phong declared",
+    "<rayType name='Phong'>",
+)
+T008 = rule(
+    "T008",
+    ERROR,
+    "Raytrace pass lacks what it needs",
+    "A raytrace pass needs an entry point with a ray generation program, and a render target.",
+    "<pass class='raytrace' name='a'/>",
+    "… <rtEntryPoint> … <renderTarget …/> …",
+)
+T009 = rule(
+    "T009",
+    WARNING,
+    "Output buffer not written",
+    "This version writes the first colour of the render target only.",
+    "<optixOutput><buffer var='extra' …/>",
+    "write to the render target",
+)
+T013 = rule(
+    "T013",
+    WARNING,
+    "Only one mask counts",
+    "Several inputs claim to select pixels; the first one with `mask` is used.",
+    "two <buffer … mask='w'/>",
+    "one <buffer … mask='w'/>",
+)
+
+
+def raytrace_passes(project: Project) -> list[tuple[str, RaytracePass]]:
+    """(pipeline name, pass) of every raytrace pass, in file order."""
+    return [
+        (pipeline.name or "", p)
+        for pipeline in project.pipelines
+        for p in pipeline.passes
+        if p.pass_class in RAYTRACE_CLASSES and isinstance(p, RaytracePass)
+    ]
+
+
+@check
+def one_pass(facts: Facts) -> Iterator[Diagnostic]:
+    """One raytrace pass a project."""
+    found = raytrace_passes(facts.project)
+    if len(found) < 2 or facts.project.file.raytracePasses == "many":
+        return
+    first_pipeline, first = found[0]
+    for pipeline, pass_ in found[1:]:
+        yield T001.at(
+            pass_.location,
+            f"pass '{pass_.name}' of pipeline '{pipeline}' is a second raytrace pass; the first is "
+            f"'{first.name}' of pipeline '{first_pipeline}' at {first.location}. A project has "
+            'one, unless <project raytracePasses="many">',
+            ((first.location, f"first raytrace pass '{first.name}'"),),
+        )
+
+
+@check
+def masks(facts: Facts) -> Iterator[Diagnostic]:
+    """The mask must be written by an earlier pass."""
+    project = facts.project
+    for pipeline in project.pipelines:
+        graph = build(project, pipeline, facts.contracts)
+        for index, pass_ in enumerate(graph.passes):
+            if not isinstance(pass_, RaytracePass) or pass_.mask is None:
+                continue
+            if sum(1 for source in pass_.rtInput if source.mask) > 1:
+                yield T013.at(
+                    pass_.location,
+                    f"pass '{pass_.name}' has several mask inputs; '{pass_.mask.var}' is used",
+                )
+            name = pass_.mask.texture or ""
+            if project.target_of_texture(name) is None:
+                continue
+            if not any(w < index for w in graph.writers(Resource("texture", name))):
+                yield T002.at(
+                    pass_.mask.where("texture"),
+                    f"the mask '{name}' of pass '{pass_.name}' is written by no earlier pass of "
+                    f"pipeline '{pipeline.name}'",
+                )
+
+
+@check
+def completeness(facts: Facts) -> Iterator[Diagnostic]:
+    """Entry point, render target, ray types."""
+    for _, pass_ in raytrace_passes(facts.project):
+        if pass_.rtEntryPoint is None or pass_.rtEntryPoint.rayGen is None:
+            yield T008.at(
+                pass_.location, f"raytrace pass '{pass_.name}' has no ray generation program"
+            )
+        if pass_.renderTarget is None:
+            yield T008.at(pass_.location, f"raytrace pass '{pass_.name}' has no <renderTarget>")
+        if not pass_.ray_types:
+            yield T008.at(pass_.location, f"raytrace pass '{pass_.name}' has no ray type")
+        for output in pass_.rtOutput:
+            yield T009.at(
+                output.location,
+                f"output '{output.var}' of pass '{pass_.name}' is not written by this version",
+            )
+        declared = [t.name for t in pass_.rtRayTypes if t.name]
+        for material in pass_.materials:
+            for group in material.rayTypes:
+                if declared and group.name and group.name not in declared:
+                    yield T007.at(
+                        group.where("name"),
+                        f"ray type '{group.name}' of pass '{pass_.name}' is not declared; there is "
+                        f"{listing(declared)}{nearest(group.name, declared)}",
+                    )
+
+
+@check
+def programs(facts: Facts) -> Iterator[Diagnostic]:
+    """Every program's file and procedure, without executing anything."""
+    project = facts.project
+    for _, pass_ in raytrace_passes(project):
+        label = f"pass '{pass_.name}'"
+        entry = pass_.rtEntryPoint
+        if entry is not None and entry.rayGen is not None:
+            yield from _program(project, entry.rayGen, RAY_GENERATION, label)
+        if entry is not None and entry.exception is not None:
+            yield from _program(project, entry.exception, EXCEPTION, label)
+        for material in pass_.materials:
+            whose = f"{label}, material '{material.to or 'default'}'"
+            for group in material.rayTypes:
+                for program in group.programs:
+                    what = f"{whose}, ray type '{group.name}'"
+                    yield from _program(project, program, program.type or "", what)
+
+
+def _program(project: Project, program: Program, kind: str, label: str) -> Iterator[Diagnostic]:
+    file, proc = program.file, program.proc
+    if file is None or proc is None:
+        return  # S004 says so
+    if file == BUILTIN:
+        fitting = [name for name, (of, _) in BUILTIN_PROGRAMS.items() if of == kind]
+        if proc not in fitting:
+            yield T006.at(
+                program.where("proc"),
+                f"{label}: there is no built-in {kind} program '{proc}'; there is "
+                f"{listing(fitting)}{nearest(proc, fitting)}",
+            )
+        return
+    written = resolve(project.folder, file)
+    path = stand_in(project.folder, file)
+    if path is None:
+        if written.exists:
+            yield T005.at(
+                program.where("file"),
+                f"{label}: program '{proc}' is in '{file}', and no "
+                f"'{written.path.with_suffix('.py').name}' beside it stands in",
+            )
+        else:
+            near = similar(written)
+            hint = f" (did you mean {listing(near)}?)" if near else ""
+            yield T003.at(
+                program.where("file"), f"{label}: program file '{file}' does not exist{hint}"
+            )
+        return
+    known = functions(path)
+    if known is not None and not {proc, strip_decoration(proc)} & set(known):
+        yield T004.at(
+            program.where("proc"),
+            f"{label}: '{path.name}' defines no function '{proc}'; it defines "
+            f"{listing(known)}{nearest(proc, known)}",
+        )
+
+
+def functions(path: Path) -> list[str] | None:
+    """Names that a Python file defines at its top level, by reading it; None if it has no parse."""
+    try:
+        tree = ast.parse(path.read_bytes(), str(path))
+    except (OSError, SyntaxError, ValueError):
+        return None
+    names = [n.name for n in tree.body if isinstance(n, ast.FunctionDef)]
+    for node in tree.body:
+        if isinstance(node, ast.Assign):
+            names += [t.id for t in node.targets if isinstance(t, ast.Name)]
+        elif isinstance(node, ast.ImportFrom | ast.Import):
+            names += [a.asname or a.name for a in node.names]
+    return names

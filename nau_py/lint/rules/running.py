@@ -1,0 +1,84 @@
+"""E, G, M and T: what only running a project finds; registered here for the reference page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from nau_py.diagnostic import Diagnostic
+from nau_py.lint.rule import ERROR, WARNING, Facts, check, rule
+from nau_py.lint.walk import nodes
+from nau_py.model.passes import Script
+
+L001 = rule(
+    "L001",
+    WARNING,
+    "Lua script is not run",
+    "This version does not run Lua: the pass or pipeline goes on as if there were no script.",
+    "<preScript file='a.lua' script='f'/>",
+    "write the value into the project file",
+)
+L002 = rule(
+    "L002",
+    WARNING,
+    "Physics is ignored",
+    "nau_py simulates no physics.",
+    "<physicsLib filename='a.plib'/>",
+    "leave it out",
+)
+for id_, severity, title, why in (
+    (
+        "D101",
+        ERROR,
+        "No OpenGL driver",
+        "Running needs OpenGL 4.5; Mesa's software driver will do.",
+    ),
+    ("E001", ERROR, "Pass failed", "A pass failed for a reason that no other rule covers."),
+    (
+        "E002",
+        ERROR,
+        "Output cannot be written",
+        "The file could not be written, or its ending is unknown.",
+    ),
+    ("G001", ERROR, "GLSL error", "The driver rejects a shader; the place is in the shader file."),
+    ("G002", ERROR, "Shader file unreadable", "A shader file could not be read."),
+    ("G003", ERROR, "Shader does not link", "The stages of a program do not fit together."),
+    ("G004", ERROR, "Stage not supported", "Mesh and task shaders need NV_mesh_shader."),
+    ("M001", ERROR, "Model unreadable", "A model file could not be read; what is wrong is said."),
+    ("M002", ERROR, "Geometry not supported", "Terrain and buffers are not supported yet."),
+    ("M003", WARNING, "Vertices not finite", "Faces with such vertices are left out."),
+    ("M004", WARNING, "Model texture missing", "The material is drawn without the texture."),
+    ("P010", ERROR, "Render target incomplete", "The driver cannot make such a framebuffer."),
+    ("T010", ERROR, "Ray program raised", "A program failed; the place is its own source line."),
+    ("T011", ERROR, "Ray program returned the wrong thing", "Shape or type is not what is needed."),
+    (
+        "T012",
+        ERROR,
+        "Ray program not trusted",
+        "Programs load from the project's folder, its "
+        "libraries' folders and the package; --allow-programs DIR adds one.",
+    ),
+    (
+        "T014",
+        WARNING,
+        "Samples that are not finite",
+        "They are dropped, or painted by the exception program, and counted.",
+    ),
+):
+    rule(id_, severity, title, why, "see the message", "see the message")
+
+
+@check
+def scripts(facts: Facts) -> Iterator[Diagnostic]:
+    """Lua hooks, which are not run."""
+    for node in nodes(facts.project):
+        if isinstance(node, Script):
+            yield L001.at(
+                node.location, f"<{node.tag}> '{node.script}' of '{node.file}' is not run"
+            )
+
+
+@check
+def physics(facts: Facts) -> Iterator[Diagnostic]:
+    """Physics libraries, which are ignored."""
+    for library in facts.project.assets.physicsLibs:
+        yield L002.at(library.location, f"physics library '{library.filename}' is ignored")

@@ -1,0 +1,45 @@
+"""Names of materials that models bring, read without building any geometry."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from nau_py.model.linked import Project
+from nau_py.paths import resolve
+from nau_py.scene.obj import DEFAULT_MATERIAL, ModelError, load_mtl
+from nau_py.scene.primitives import DEFAULT_MATERIAL as PRIMITIVE_MATERIAL
+
+_LIBRARY = re.compile(rb"^[ \t]*m\w*[ \t]+(.+?)[ \t\r]*$", re.MULTILINE)
+
+
+def default_material_names(project: Project) -> frozenset[str] | None:
+    """Names in the default library: built in, of primitives, and of OBJ models.
+
+    None where a model is in another format, whose names only loading it tells.
+    """
+    names = set(project.default_materials()) | {PRIMITIVE_MATERIAL}
+    for scene in project.assets.scenes:
+        if scene.folders or scene.terrain or scene.buffers:
+            return None
+        names |= {g.material for g in scene.geometry if g.material}
+        files = [scene.filename] if scene.filename else [f.name for f in scene.files]
+        for file in files:
+            found = resolve(Path(scene.location.file).parent, file or "")
+            if not found.exists or found.path.suffix.lower() != ".obj":
+                return None
+            names |= _obj_names(found.best)
+    return frozenset(names)
+
+
+def _obj_names(path: Path) -> set[str]:
+    libraries = _LIBRARY.findall(path.read_bytes())
+    if not libraries:
+        return {DEFAULT_MATERIAL}
+    names: set[str] = set()
+    for library in libraries:
+        try:
+            names |= {m.name for m in load_mtl(path, library.decode("utf-8", "replace"))}
+        except ModelError:
+            continue
+    return names
