@@ -40,7 +40,7 @@ class Binder:
 
     def bind(self, element: Element, cls: type[N]) -> N:
         """The model of ``element``."""
-        node = cls(
+        node = cls.model_construct(  # values are converted here: no second validation
             location=element.location,
             attribute_locations=element.attribute_locations,
             tag=element.source_tag,

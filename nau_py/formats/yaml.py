@@ -18,7 +18,7 @@ from nau_py.formats.tolerant import XmlSyntaxError
 from nau_py.model.attributes import Registry
 from nau_py.model.element import Element
 from nau_py.model.location import Location
-from nau_py.model.node import Attr, Child, Items, Marker, Node, Settings, Variants, file_key
+from nau_py.model.node import Attr, Child, Inline, Items, Marker, Node, Settings, Variants, file_key
 from nau_py.model.values import (
     DataType,
     Scalar,
@@ -216,8 +216,12 @@ def to_yaml(element: Element, cls: type[Node], registry: Registry) -> Any:
     if short is not None:
         return short
     data = CommentedMap()
+    types = {key: marker.type for key, marker in attributes.items()}
+    for marker in markers.values():
+        if isinstance(marker, Inline):
+            types |= {a.name: a.type for a in registry[marker.type]}
     for key, text in element.attributes.items():
-        data[key] = _native(text, attributes[key].type) if key in attributes else text
+        data[key] = _native(text, types[key]) if key in types else text
     for child in element.children:
         _add_child(data, child, markers, registry)
     return data
