@@ -81,6 +81,8 @@ class Reader:
         """User attributes come first: they decide which keys of the rest are settings."""
         assets = data.get("assets") if isinstance(data, dict) else None
         listed = assets.get("attributes") if isinstance(assets, dict) else None
+        if isinstance(listed, dict):  # the long form of a wrapper
+            listed = listed.get("items")
         for item in listed if isinstance(listed, list) else []:
             if isinstance(item, dict):
                 texts = {str(k): str(v) for k, v in item.items()}

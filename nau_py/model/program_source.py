@@ -24,7 +24,10 @@ def stand_in(folder: Path, file: str) -> Path | None:
     None where there is neither.
     """
     found = resolve(folder, file)
-    if found.path.suffix.lower() != ".py":
+    suffix = found.path.suffix.lower()
+    if suffix != ".py":
+        if suffix != ".ptx":
+            return None
         sibling = resolve(folder, str(Path(file.replace("\\", "/")).with_suffix(".py")))
         return sibling.best if sibling.exists else None
     return found.best if found.exists else None

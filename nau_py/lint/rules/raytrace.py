@@ -217,10 +217,11 @@ def _program(project: Project, program: Program, kind: str, label: str) -> Itera
     path = stand_in(project.folder, file)
     if path is None:
         if written.exists:
+            sibling = written.path.with_suffix(".py").name
             yield T005.at(
                 program.where("file"),
-                f"{label}: program '{proc}' is in '{file}', and no "
-                f"'{written.path.with_suffix('.py').name}' beside it stands in",
+                f"{label}: program '{proc}' is in '{file}', which does not run here, and no "
+                f"'{sibling}' beside it stands in",
             )
         else:
             near = similar(written)
