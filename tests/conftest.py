@@ -16,7 +16,6 @@ ROOT = Path(__file__).parent.parent
 PROJECTS = ROOT / "projects"
 
 
-
 class Folder:
     """A project folder in the making."""
 
@@ -127,7 +126,13 @@ def ray_project(folder: Folder) -> RayProject:
         w, h = size
         folder.write("lib.mlib", LIBRARY.format(w=w, h=h))
         text = RAY_PROJECT.format(
-            w=w, h=h, lx=light[0], ly=light[1], lz=light[2], camera=camera, spp=spp,
+            w=w,
+            h=h,
+            lx=light[0],
+            ly=light[1],
+            lz=light[2],
+            camera=camera,
+            spp=spp,
             programs=programs,
         )
         folder.write("project.xml", text)

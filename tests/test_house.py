@@ -58,7 +58,9 @@ def test_imports_point_one_way(room: str) -> None:
         assert not wrong, f"{path.relative_to(PACKAGE)} imports {wrong}"
 
 
-@pytest.mark.parametrize("package, home", [("embreex", "raytrace/accel.py"), ("OpenGL", "raster/gl.py")])
+@pytest.mark.parametrize(
+    "package, home", [("embreex", "raytrace/accel.py"), ("OpenGL", "raster/gl.py")]
+)
 def test_one_file_wraps(package: str, home: str) -> None:
     users = [
         str(p.relative_to(PACKAGE))
@@ -99,9 +101,24 @@ def test_lint_and_plan_need_no_gl_and_no_embree() -> None:
 
 def test_public_surface() -> None:
     assert nau_py.__all__ == [
-        "DeviceError", "Diagnostic", "Frame", "Location", "NauError", "OutputError", "Plan",
-        "ProgramError", "Project", "ProjectError", "Renderer", "RunOptions", "Severity",
-        "ShaderError", "__version__", "lint", "load", "plan",
+        "DeviceError",
+        "Diagnostic",
+        "Frame",
+        "Location",
+        "NauError",
+        "OutputError",
+        "Plan",
+        "ProgramError",
+        "Project",
+        "ProjectError",
+        "Renderer",
+        "RunOptions",
+        "Severity",
+        "ShaderError",
+        "__version__",
+        "lint",
+        "load",
+        "plan",
     ]
     for name in nau_py.__all__:
         assert getattr(nau_py, name) is not None

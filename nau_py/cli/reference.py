@@ -62,8 +62,10 @@ def _children(cls: type[Node]) -> tuple[list[str], list[type[Node]]]:
     for name, marker in cls.markers().items():
         if isinstance(marker, Child):
             found.append(marker.cls)
-            lines.append(f"- `<{marker.tag or name}>` ([{marker.cls.__name__}]"
-                         f"(#{marker.cls.__name__.lower()})) {marker.doc}".rstrip())
+            lines.append(
+                f"- `<{marker.tag or name}>` ([{marker.cls.__name__}]"
+                f"(#{marker.cls.__name__.lower()})) {marker.doc}".rstrip()
+            )
         elif isinstance(marker, Items):
             found.append(marker.cls)
             where = f"`<{marker.wrapper}>` of " if marker.wrapper else ""
@@ -87,7 +89,13 @@ def _sets() -> list[str]:
     for set_ in BUILT_IN.values():
         if not set_.attributes:
             continue
-        lines += ["", f"### {set_.type}", "", "| attribute | type | default | |", "|---|---|---|---|"]
+        lines += [
+            "",
+            f"### {set_.type}",
+            "",
+            "| attribute | type | default | |",
+            "|---|---|---|---|",
+        ]
         for a in set_:
             default = ", ".join(format_scalar(v) for v in a.default)
             kind = a.type.value

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from nau_py.formats.settings import parse_inline, parse_setting, write_setting
 from nau_py.model.attributes import Registry
@@ -40,11 +40,12 @@ class Binder:
 
     def bind(self, element: Element, cls: type[N]) -> N:
         """The model of ``element``."""
-        node = cls.model_construct(  # values are converted here: no second validation
+        made = cls.model_construct(  # values are converted here: no second validation
             location=element.location,
             attribute_locations=element.attribute_locations,
             tag=element.source_tag,
         )
+        node = cast(N, made)  # the plug-in of mypy takes it for a plain Node
         markers = cls.markers()
         self._bind_attributes(element, node, markers)
         for child in element.children:

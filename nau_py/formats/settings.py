@@ -15,7 +15,12 @@ from nau_py.model.values import (
     to_scalar,
 )
 
-_KEYS: tuple[tuple[str, ...], ...] = (("x", "r", "width"), ("y", "g", "height"), ("z", "b"), ("w", "a"))
+_KEYS: tuple[tuple[str, ...], ...] = (
+    ("x", "r", "width"),
+    ("y", "g", "height"),
+    ("z", "b"),
+    ("w", "a"),
+)
 
 
 def _spellings(attribute: Attribute) -> list[tuple[str, ...]]:

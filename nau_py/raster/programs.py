@@ -24,6 +24,9 @@ _STAGE_NAMES = {
     "te": "tess_evaluation_shader",
     "ps": "fragment_shader",
 }
+_STRIDE = 100_000
+"""Line numbers of the k-th file of a list begin at k · _STRIDE: drivers lose the file index of
+``#line``, but not the line."""
 _LOG_LINE = re.compile(
     r"^\s*(?:ERROR:\s*)?(?P<file>\d+)[:(](?P<line>\d+)\)?(?:\((?P<column>\d+)\))?\s*:\s*"
     r"(?P<text>.*)$",
@@ -92,7 +95,7 @@ def read_stage(shader: Shader, stage: str) -> StageSource | None:
             where = shader.where(stage)
             message = f"shader '{shader.name}', stage {stage}: file '{file}': {problem.strerror}"
             raise ShaderError(error("G002", where, message)) from None
-        texts.append(text if index == 0 else f"\n#line 1 {index}\n{text}")
+        texts.append(text if index == 0 else f"\n#line {index * _STRIDE + 1} {index}\n{text}")
     whole = "".join(texts)
     stripped = whole.lstrip()
     return StageSource(stripped, files, whole[: len(whole) - len(stripped)].count("\n"))
@@ -111,8 +114,9 @@ def _located(
         if match is None or "warning" in match["text"].lower().split(":")[0]:
             continue
         source = sources[stage] if stage in sources else next(iter(sources.values()))
-        index = min(int(match["file"]), len(source.files) - 1)
-        row = int(match["line"]) + (source.skipped if index == 0 else 0)
+        index, row = divmod(int(match["line"]), _STRIDE)
+        index = min(index, len(source.files) - 1)
+        row += source.skipped if index == 0 else 0
         where = Location(str(source.files[index]), row, int(match["column"] or 1))
         text = re.sub(r"^error\s*\w*\s*:\s*", "", match["text"], flags=re.IGNORECASE)
         found.append(error("G001", where, f"{label}, stage {stage}: {text}"))

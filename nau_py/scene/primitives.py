@@ -52,7 +52,14 @@ def square(material: str) -> Mesh:
     position = np.stack([corners[:, 0], np.zeros(4), corners[:, 1]], axis=1).astype(np.float32)
     normal = np.tile(np.array([0, 1, 0], np.float32), (4, 1))
     tangent = np.tile(np.array([0, 0, -1], np.float32), (4, 1))
-    return _mesh(position, normal, ((corners + 1) / 2).astype(np.float32), tangent, [0, 1, 2, 0, 2, 3], material)
+    return _mesh(
+        position,
+        normal,
+        ((corners + 1) / 2).astype(np.float32),
+        tangent,
+        [0, 1, 2, 0, 2, 3],
+        material,
+    )
 
 
 def sphere(slices: int, stacks: int, material: str) -> Mesh:
@@ -74,9 +81,7 @@ def sphere(slices: int, stacks: int, material: str) -> Mesh:
 
 def grid(divisions: int, length: float, material: str) -> Mesh:
     """(divisions + 1)² vertices in the xz plane, centred, of side ``length``."""
-    rows, columns = np.meshgrid(
-        np.arange(divisions + 1), np.arange(divisions + 1), indexing="ij"
-    )
+    rows, columns = np.meshgrid(np.arange(divisions + 1), np.arange(divisions + 1), indexing="ij")
     i, j = rows.reshape(-1), columns.reshape(-1)
     half = length / 2
     x, z = -half + i * length / divisions, half - j * length / divisions

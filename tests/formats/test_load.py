@@ -4,19 +4,24 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.conftest import Folder
-
 import nau_py
 from nau_py.model.problem import ProblemKind
 from nau_py.paths import resolve
+from tests.conftest import Folder
 
 
 def test_user_attributes_are_settings_in_libraries_too(folder: Folder) -> None:
-    folder.write("lib.mlib", '<materialLib name="L"><states><state name="s"><glow value=2/></state>'
-                 "</states></materialLib>")
-    folder.write("project.xml", '<project name="P"><assets><attributes>'
-                 '<attribute type="STATE" name="glow" data="FLOAT" value="1"/></attributes>'
-                 '<materialLibs><materialLib filename="lib.mlib"/></materialLibs></assets></project>')
+    folder.write(
+        "lib.mlib",
+        '<materialLib name="L"><states><state name="s"><glow value=2/></state>'
+        "</states></materialLib>",
+    )
+    folder.write(
+        "project.xml",
+        '<project name="P"><assets><attributes>'
+        '<attribute type="STATE" name="glow" data="FLOAT" value="1"/></attributes>'
+        '<materialLibs><materialLib filename="lib.mlib"/></materialLibs></assets></project>',
+    )
     project = folder.load()
     state = project.state("L", "s")
     assert state is not None
@@ -24,11 +29,17 @@ def test_user_attributes_are_settings_in_libraries_too(folder: Folder) -> None:
 
 
 def test_constants_resolve_in_libraries(folder: Folder) -> None:
-    folder.write("lib.mlib", '<materialLib name="L"><renderTargets><renderTarget name="r">'
-                 '<SIZE width="side" height=8 /></renderTarget></renderTargets></materialLib>')
-    folder.write("project.xml", '<project name="P"><assets><constants>'
-                 '<constant name="side" value="96.7"/></constants>'
-                 '<materialLibs><materialLib filename="lib.mlib"/></materialLibs></assets></project>')
+    folder.write(
+        "lib.mlib",
+        '<materialLib name="L"><renderTargets><renderTarget name="r">'
+        '<SIZE width="side" height=8 /></renderTarget></renderTargets></materialLib>',
+    )
+    folder.write(
+        "project.xml",
+        '<project name="P"><assets><constants>'
+        '<constant name="side" value="96.7"/></constants>'
+        '<materialLibs><materialLib filename="lib.mlib"/></materialLibs></assets></project>',
+    )
     project = folder.load()
     target = project.render_target("L", "r")
     assert target is not None
@@ -36,8 +47,11 @@ def test_constants_resolve_in_libraries(folder: Folder) -> None:
 
 
 def test_a_colour_without_alpha_gets_alpha_zero(folder: Folder) -> None:
-    folder.write("project.xml", '<project name="P"><assets><viewports><viewport name="V">'
-                 "<CLEAR_COLOR r=1 g=1 b=1/></viewport></viewports></assets></project>")
+    folder.write(
+        "project.xml",
+        '<project name="P"><assets><viewports><viewport name="V">'
+        "<CLEAR_COLOR r=1 g=1 b=1/></viewport></viewports></assets></project>",
+    )
     project = folder.load()
     assert project.value(project.assets.viewports[0], "VIEWPORT", "CLEAR_COLOR") == (1, 1, 1, 0)
 

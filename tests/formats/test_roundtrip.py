@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from tests.conftest import PROJECTS, ROOT, Folder
 
 import nau_py
 from nau_py.formats.bind import unbind
@@ -15,6 +14,7 @@ from nau_py.model.library import MaterialLibrary
 from nau_py.model.linked import Project
 from nau_py.model.node import Node
 from nau_py.model.project import ProjectFile
+from tests.conftest import PROJECTS, ROOT, Folder
 
 EVERYTHING = """\
 <project name="E" width=640 height=360 raytracePasses="many" extra="kept">
@@ -107,7 +107,9 @@ def test_no_attribute_is_lost(folder: Folder) -> None:
 
 def test_a_change_is_not_equal(folder: Folder) -> None:
     first = nau_py.load(folder.write("a.xml", EVERYTHING))
-    second = nau_py.load(folder.write("b.xml", EVERYTHING.replace("<deep b=\"2\"/>", "<deep b='3'/>")))
+    second = nau_py.load(
+        folder.write("b.xml", EVERYTHING.replace('<deep b="2"/>', "<deep b='3'/>"))
+    )
     assert first.file != second.file
 
 
@@ -122,14 +124,21 @@ def test_a_library_survives(folder: Folder) -> None:
     path = ROOT / "materials" / "hybrid.mlib"
     project = load_library(path)
     for style, name in (("xml", "again.mlib"), ("yaml", "again.mlib.yaml")):
-        assert reread(project, project.libraries[-1], style, folder.path / name) == (
-            project.libraries[-1]
+        assert (
+            reread(project, project.libraries[-1], style, folder.path / name)
+            == (project.libraries[-1])
         )
 
 
 def test_yaml_is_idiomatic(folder: Folder) -> None:
     project = nau_py.load(folder.write("project.xml", EVERYTHING))
     text = format_node(project.file, project.registry, "yaml")
-    for line in ("SCALE: [1.0, 2.0, 3.0]", "COLOR_CLEAR: false", "camera: C", "mode: RUN_ONCE",
-                 "instances: other", "STACKS: side"):
+    for line in (
+        "SCALE: [1.0, 2.0, 3.0]",
+        "COLOR_CLEAR: false",
+        "camera: C",
+        "mode: RUN_ONCE",
+        "instances: other",
+        "STACKS: side",
+    ):
         assert line in text

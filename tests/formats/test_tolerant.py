@@ -22,7 +22,7 @@ def parse(text: str) -> Element:
         ("<a  x = '1'\n y\t=\t2 />", {"x": "1", "y": "2"}),
         ("<a x='1'y='2'/>", {"x": "1", "y": "2"}),
         ("<a t='a & b < c &unknown; &amp; &#65; &lt;'/>", {"t": "a & b < c &unknown; & A <"}),
-        ('<a t=\'say "hi"\'/>', {"t": 'say "hi"'}),
+        ("<a t='say \"hi\"'/>", {"t": 'say "hi"'}),
         ("\n\n<?xml version='1.0' ?><a x=1/>", {"x": "1"}),
         ("\ufeff<a x=1/>", {"x": "1"}),
         ("<!DOCTYPE a><a x=1/>junk after the root <", {"x": "1"}),

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from tests.conftest import Folder
-
 from nau_py.model.linked import Project
 from nau_py.model.problem import ProblemKind
 from nau_py.model.raytrace import RaytracePass
+from tests.conftest import Folder
 
 OPTIX = """\
 <project name="O"><pipelines><pipeline name="P">
@@ -61,7 +60,9 @@ def test_optix_elements_become_the_neutral_ones(folder: Folder) -> None:
     assert found.ray_types == ["Phong", "Shadow"]
     default, glass = found.materials
     assert [(g.name, p.type, p.proc) for g in default.rayTypes for p in g.programs] == [
-        ("Phong", "CLOSEST_HIT", "shade"), ("Phong", "ANY_HIT", "alpha"), ("Shadow", "MISS", "lit"),
+        ("Phong", "CLOSEST_HIT", "shade"),
+        ("Phong", "ANY_HIT", "alpha"),
+        ("Shadow", "MISS", "lit"),
     ]
     assert (glass.to, glass.rayTypes[0].programs[0].proc) == ("Vidro", "glass")
     assert [(v.name, v.component) for v in found.rtMaterialParams] == [("diffuse", "DIFFUSE")]
@@ -79,12 +80,15 @@ def test_messages_speak_of_the_written_tag(folder: Folder) -> None:
 
 
 def test_old_user_attributes_and_clears(folder: Folder) -> None:
-    folder.write("project.xml", """\
+    folder.write(
+        "project.xml",
+        """\
 <project name="O"><assets><attributes>
 <attribute name="steps" context="PASS" type="INT" value="7"/></attributes></assets>
 <pipelines><pipeline name="P"><pass name="q" class="quad">
 <color clear="false" enable="true"/></pass></pipeline></pipelines></project>
-""")
+""",
+    )
     project = folder.load()
     assert [p.kind for p in project.problems] == [ProblemKind.LEGACY, ProblemKind.LEGACY]
     assert project.registry["PASS"].default("steps") == (7,)

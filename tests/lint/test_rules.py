@@ -5,11 +5,11 @@ from __future__ import annotations
 import re
 
 import pytest
-from tests.conftest import PROJECTS, ROOT, Folder
 
 import nau_py
 from nau_py.lint.rule import RULES
 from nau_py.lint.rules import families
+from tests.conftest import PROJECTS, ROOT, Folder
 
 LIB = """\
 <materialLib name="L">
@@ -143,26 +143,32 @@ def test_the_demos_have_no_finding() -> None:
             "R004 error `W` attribute 'name' of <viewport> names the viewport 'W'",
         ),
         (
-            DRAW.format("<materialMaps><map fromMaterial='*' toLibrary='K' toMaterial='m'/>"
-                        "</materialMaps>"),
+            DRAW.format(
+                "<materialMaps><map fromMaterial='*' toLibrary='K' toMaterial='m'/></materialMaps>"
+            ),
             "R005 error `K` attribute 'toLibrary' of <map> names the library 'K', which is "
             "undefined; there is '__nau_material_lib', 'L'",
         ),
         (
-            DRAW.format("<materialMaps><map fromMaterial='*' toLibrary='L' toMaterial='n'/>"
-                        "</materialMaps>"),
+            DRAW.format(
+                "<materialMaps><map fromMaterial='*' toLibrary='L' toMaterial='n'/></materialMaps>"
+            ),
             "R006 error `n` attribute 'toMaterial' of <map> names the material 'n' of library "
             "'L', which is undefined; it has 'm', 'reads'",
         ),
         (
-            DRAW.format("<materialMaps><map fromMaterial='Flor' toLibrary='L' toMaterial='m'/>"
-                        "</materialMaps>"),
+            DRAW.format(
+                "<materialMaps><map fromMaterial='Flor' toLibrary='L' toMaterial='m'/>"
+                "</materialMaps>"
+            ),
             "R018 warning `Flor` 'Flor' of pass 'draw' matches no material; there is 'Floor' "
             "(did you mean 'Floor'?)",
         ),
         (
-            DRAW.format("<injectionMaps><map toMaterial='*'><state name='t' fromLibrary='L'/></map>"
-                        "</injectionMaps>"),
+            DRAW.format(
+                "<injectionMaps><map toMaterial='*'><state name='t' fromLibrary='L'/></map>"
+                "</injectionMaps>"
+            ),
             "R008 error `t` attribute 'name' of <state> names the state 't' of library 'L', "
             "which is undefined; it has 's'",
         ),
@@ -205,8 +211,10 @@ def test_the_demos_have_no_finding() -> None:
             "writes",
         ),
         (
-            DRAW.format("<materialMaps><map fromMaterial='*' toLibrary='L' toMaterial='reads'/>"
-                        "</materialMaps>"),
+            DRAW.format(
+                "<materialMaps><map fromMaterial='*' toLibrary='L' toMaterial='reads'/>"
+                "</materialMaps>"
+            ),
             "D004 error `pass` cycle: pass 'draw' samples texture L::c while drawing into it",
         ),
         (
@@ -223,32 +231,73 @@ def test_pass_findings(folder: Folder, passes: str, expected: str) -> None:
 @pytest.mark.parametrize(
     "program, more, expected",
     [
-        (MIRROR.replace("mirror", "miror"), "", "T006 error `miror` pass 'trace', material 'default', "
-         "ray type 'R': there is no built-in CLOSEST_HIT program 'miror'; there is 'lambert', "
-         "'emission', 'mirror' (did you mean 'mirror'?)"),
-        (MIRROR.replace("builtin", "prog.pie"), "", "T003 error `prog.pie` pass 'trace', material "
-         "'default', ray type 'R': program file 'prog.pie' does not exist (did you mean "
-         "'prog.py'?)"),
-        (MIRROR.replace("builtin", "prog.py").replace("mirror", "shad"), "", "T004 error `shad` pass "
-         "'trace', material 'default', ray type 'R': 'prog.py' defines no function 'shad'; it "
-         "defines 'shade', 'np' (did you mean 'shade'?)"),
-        (MIRROR.replace("builtin", "a.vert"), "", "T005 error `a.vert` pass 'trace', material "
-         "'default', ray type 'R': program 'mirror' is in 'a.vert', which does not run here, and no 'a.py'"),
-        (MIRROR, "<rtInput><buffer var='mask' texture='L::w'/></rtInput>", "T002 error `L::w` the "
-         "mask 'L::w' of pass 'trace' is written by no earlier pass of pipeline 'P'"),
-        (MIRROR, "<rtInput><buffer var='m' texture='L::w'/></rtInput>", "D005 error `L::w` "
-         "raytrace pass 'trace': input 'L::w' is 16 x 8, its render target 'rt' 8 x 8"),
-        (MIRROR, "<rtInput><buffer var='m' mask='w' texture='L::w'/></rtInput>", "D006 error "
-         "`w` mask component 'w' of input 'L::w': the texture has 1 channels"),
-        (MIRROR, "<rtRayTypes><rayType name='Q'/></rtRayTypes>", "T007 warning `R` ray type 'R' "
-         "of pass 'trace' is not declared; there is 'Q'"),
-        (MIRROR, "<rtGlobalParams><param name='x' type='LIGTH' context='CURRENT' component='COLOR'"
-         "/></rtGlobalParams>", "R015 error `LIGTH` attribute 'type' of <param> names the object "
-         "type 'LIGTH'"),
-        (MIRROR, "<rtGlobalParams><param name='x' type='LIGHT' context='CURRENT' component='COLOUR'"
-         "/></rtGlobalParams>", "R016 error `COLOUR` LIGHT has no component 'COLOUR'; it has"),
-        (MIRROR, "<rtGlobalParams><param name='x' type='LIGHT' context='Son' component='COLOR'"
-         "/></rtGlobalParams>", "R017 error `Son` context 'Son' is no light of the project"),
+        (
+            MIRROR.replace("mirror", "miror"),
+            "",
+            "T006 error `miror` pass 'trace', material 'default', "
+            "ray type 'R': there is no built-in CLOSEST_HIT program 'miror'; there is 'lambert', "
+            "'emission', 'mirror' (did you mean 'mirror'?)",
+        ),
+        (
+            MIRROR.replace("builtin", "prog.pie"),
+            "",
+            "T003 error `prog.pie` pass 'trace', material "
+            "'default', ray type 'R': program file 'prog.pie' does not exist (did you mean "
+            "'prog.py'?)",
+        ),
+        (
+            MIRROR.replace("builtin", "prog.py").replace("mirror", "shad"),
+            "",
+            "T004 error `shad` pass "
+            "'trace', material 'default', ray type 'R': 'prog.py' defines no function 'shad'; it "
+            "defines 'shade', 'np' (did you mean 'shade'?)",
+        ),
+        (
+            MIRROR.replace("builtin", "a.vert"),
+            "",
+            "T005 error `a.vert` pass 'trace', material "
+            "'default', ray type 'R': program 'mirror' is in 'a.vert', which does not run here, and no 'a.py'",
+        ),
+        (
+            MIRROR,
+            "<rtInput><buffer var='mask' texture='L::w'/></rtInput>",
+            "T002 error `L::w` the "
+            "mask 'L::w' of pass 'trace' is written by no earlier pass of pipeline 'P'",
+        ),
+        (
+            MIRROR,
+            "<rtInput><buffer var='m' texture='L::w'/></rtInput>",
+            "D005 error `L::w` "
+            "raytrace pass 'trace': input 'L::w' is 16 x 8, its render target 'rt' 8 x 8",
+        ),
+        (
+            MIRROR,
+            "<rtInput><buffer var='m' mask='w' texture='L::w'/></rtInput>",
+            "D006 error `w` mask component 'w' of input 'L::w': the texture has 1 channels",
+        ),
+        (
+            MIRROR,
+            "<rtRayTypes><rayType name='Q'/></rtRayTypes>",
+            "T007 warning `R` ray type 'R' of pass 'trace' is not declared; there is 'Q'",
+        ),
+        (
+            MIRROR,
+            "<rtGlobalParams><param name='x' type='LIGTH' context='CURRENT' component='COLOR'"
+            "/></rtGlobalParams>",
+            "R015 error `LIGTH` attribute 'type' of <param> names the object type 'LIGTH'",
+        ),
+        (
+            MIRROR,
+            "<rtGlobalParams><param name='x' type='LIGHT' context='CURRENT' component='COLOUR'"
+            "/></rtGlobalParams>",
+            "R016 error `COLOUR` LIGHT has no component 'COLOUR'; it has",
+        ),
+        (
+            MIRROR,
+            "<rtGlobalParams><param name='x' type='LIGHT' context='Son' component='COLOR'"
+            "/></rtGlobalParams>",
+            "R017 error `Son` context 'Son' is no light of the project",
+        ),
     ],
 )
 def test_raytrace_findings(folder: Folder, program: str, more: str, expected: str) -> None:
@@ -273,7 +322,9 @@ def test_two_raytrace_passes_are_an_error_naming_both(folder: Folder) -> None:
         f"'trace' of pipeline 'P' at {path}:13:1. A project has one, unless <project "
         'raytracePasses="many">'
     ]
-    text = path.read_text().replace('<project name="P">', '<project name="P" raytracePasses="many">')
+    text = path.read_text().replace(
+        '<project name="P">', '<project name="P" raytracePasses="many">'
+    )
     path.write_text(text)
     assert not [d for d in nau_py.lint(folder.load()) if d.rule == "T001"]
 
@@ -282,11 +333,19 @@ def test_two_raytrace_passes_are_an_error_naming_both(folder: Folder) -> None:
     "assets, expected",
     [
         ("<cameras/>", "X004 warning `cameras` <cameras> is given a second time in <assets>"),
-        ("<stringAliases/>", "S003 warning `stringAliases` element <stringAliases> of <assets> is ignored"),
-        ("<cameraz/>", "S001 error `cameraz` element <cameraz> of <assets> is unknown; <assets> takes"),
+        (
+            "<stringAliases/>",
+            "S003 warning `stringAliases` element <stringAliases> of <assets> is ignored",
+        ),
+        (
+            "<cameraz/>",
+            "S001 error `cameraz` element <cameraz> of <assets> is unknown; <assets> takes",
+        ),
         ("words", "X003 warning `words` text between elements is ignored: 'words'"),
-        ("<physicsLibs><physicsLib filename='x.plib'/></physicsLibs>",
-         "L002 warning `physicsLib` physics library 'x.plib' is ignored"),
+        (
+            "<physicsLibs><physicsLib filename='x.plib'/></physicsLibs>",
+            "L002 warning `physicsLib` physics library 'x.plib' is ignored",
+        ),
     ],
 )
 def test_asset_findings(folder: Folder, assets: str, expected: str) -> None:
@@ -297,24 +356,56 @@ def test_asset_findings(folder: Folder, assets: str, expected: str) -> None:
 @pytest.mark.parametrize(
     "old, new, expected",
     [
-        ('vs="a.vert"', 'vs="b.vert"', "F001 error `b.vert` 'vs' of <shader>: the shader file 'b.vert' "
-         "does not exist"),
-        ('vs="a.vert"', 'vs="A.vert"', "F002 warning `A.vert` 'vs' of <shader>: 'A.vert' differs in "
-         "letter case from 'a.vert' on disk"),
-        ('vs="a.vert"', r'vs=".\a.vert"', r"F003 note `.\a.vert` 'vs' of <shader>: '.\a.vert' has "
-         "backslashes; './a.vert' works everywhere"),
-        ('name="sh"/></material>', 'name="sj"/></material>', "R007 error `sj` attribute 'name' of "
-         "<shader> names the shader 'sj' of library 'L', which is undefined; it has 'sh'"),
-        ('<texture name="c" UNIT=0 />', '<texture name="d" UNIT=0 />', "R009 error `d` attribute "
-         "'name' of <texture> names the texture 'd' of library 'L', which is undefined; it has "
-         "'c', 'rt_depth', 'w', 'wide_depth'"),
-        ('<material name="reads">', '<material name="m">', "N001 error `m` material of library "
-         "'L' 'm' is defined a second time"),
-        ("width=8 height=8", "width=0 height=8", "P004 error `renderTarget` render target 'rt': SIZE is 0 x "
-         "8; both must be above 0"),
-        ('"RGBA32F"', '"RGBA8"', "V005 error `RGBA8` attribute 'internalFormat' of <color> is 'RGBA8'"),
-        ("<SIZE width=8 height=8 />", "<SIZE width=8 />", "V003 error `SIZE` <SIZE> is a UIVEC2 and "
-         "lacks 'y or height'"),
+        (
+            'vs="a.vert"',
+            'vs="b.vert"',
+            "F001 error `b.vert` 'vs' of <shader>: the shader file 'b.vert' does not exist",
+        ),
+        (
+            'vs="a.vert"',
+            'vs="A.vert"',
+            "F002 warning `A.vert` 'vs' of <shader>: 'A.vert' differs in "
+            "letter case from 'a.vert' on disk",
+        ),
+        (
+            'vs="a.vert"',
+            r'vs=".\a.vert"',
+            r"F003 note `.\a.vert` 'vs' of <shader>: '.\a.vert' has "
+            "backslashes; './a.vert' works everywhere",
+        ),
+        (
+            'name="sh"/></material>',
+            'name="sj"/></material>',
+            "R007 error `sj` attribute 'name' of "
+            "<shader> names the shader 'sj' of library 'L', which is undefined; it has 'sh'",
+        ),
+        (
+            '<texture name="c" UNIT=0 />',
+            '<texture name="d" UNIT=0 />',
+            "R009 error `d` attribute "
+            "'name' of <texture> names the texture 'd' of library 'L', which is undefined; it has "
+            "'c', 'rt_depth', 'w', 'wide_depth'",
+        ),
+        (
+            '<material name="reads">',
+            '<material name="m">',
+            "N001 error `m` material of library 'L' 'm' is defined a second time",
+        ),
+        (
+            "width=8 height=8",
+            "width=0 height=8",
+            "P004 error `renderTarget` render target 'rt': SIZE is 0 x 8; both must be above 0",
+        ),
+        (
+            '"RGBA32F"',
+            '"RGBA8"',
+            "V005 error `RGBA8` attribute 'internalFormat' of <color> is 'RGBA8'",
+        ),
+        (
+            "<SIZE width=8 height=8 />",
+            "<SIZE width=8 />",
+            "V003 error `SIZE` <SIZE> is a UIVEC2 and lacks 'y or height'",
+        ),
     ],
 )
 def test_library_findings(folder: Folder, old: str, new: str, expected: str) -> None:

@@ -5,39 +5,11 @@ from __future__ import annotations
 from nau_py.model.attribute import Attribute, AttributeSet, choice, flag, number
 from nau_py.model.values import DataType
 
+_SUFFIXES = ("8", "16", "16F", "32F", "8I", "16I", "32I", "8UI", "16UI", "32UI")
 COLOR_FORMATS = tuple(
-    [
-        "R8",
-        "R16",
-        "R16F",
-        "R32F",
-        "R8I",
-        "R16I",
-        "R32I",
-        "R8UI",
-        "R16UI",
-        "R32UI",
-        "RG8",
-        "RG16",
-        "RG16F",
-        "RG32F",
-        "RG8I",
-        "RG16I",
-        "RG32I",
-        "RG8UI",
-        "RG16UI",
-        "RG32UI",
-        "RGBA",
-        "RGBA16",
-        "RGBA16F",
-        "RGBA32F",
-        "RGBA8I",
-        "RGBA16I",
-        "RGBA32I",
-        "RGBA8UI",
-        "RGBA16UI",
-        "RGBA32UI",
-    ]
+    "RGBA" if family + suffix == "RGBA8" else family + suffix
+    for family in ("R", "RG", "RGBA")
+    for suffix in _SUFFIXES
 )
 DEPTH_FORMATS = (
     "DEPTH_COMPONENT16",

@@ -1,0 +1,246 @@
+"""The command lines as scripts use them: exit statuses, streams, files whole or absent."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.conftest import PROJECTS, ROOT, Folder
+
+BIN = Path(sys.executable).parent
+SMALL = ["--size", "64x48"]
+SELECTIVE = str(PROJECTS / "selective" / "project.xml")
+
+PASS = {
+    "type": "object",
+    "required": ["name", "class", "status", "ms", "pixels", "rays", "rays_avoided"],
+    "properties": {
+        "status": {"enum": ["run", "left_out"]},
+        "ms": {"type": "number", "minimum": 0},
+        "rays": {"type": "object", "additionalProperties": {"type": "integer", "minimum": 1}},
+    },
+}
+REPORT = {
+    "type": "object",
+    "required": [
+        "schema",
+        "project",
+        "pipeline",
+        "machine",
+        "frames",
+        "totals",
+        "effects",
+        "warnings",
+        "nonfinite",
+    ],
+    "properties": {
+        "frames": {
+            "type": "array",
+            "items": {
+                "type": "object",
+                "required": ["index", "ms", "passes"],
+                "properties": {"passes": {"type": "array", "items": PASS}},
+            },
+        }
+    },
+}
+
+
+def run(*words: str, cwd: Path = ROOT, **env: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [BIN / words[0], *words[1:]],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        env={**os.environ, **env},
+    )
+
+
+def test_run_writes_picture_report_and_targets(tmp_path: Path) -> None:
+    done = run(
+        "nau-run",
+        SELECTIVE,
+        *SMALL,
+        "-o",
+        str(tmp_path / "p.png"),
+        "--spp",
+        "4",
+        "--report",
+        str(tmp_path / "r.json"),
+        "--targets",
+        str(tmp_path / "t"),
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""  # silent in a pipe: no progress
+    for word in ("raster", "trace", "combine", "primary", "rays avoided"):
+        assert word in done.stdout
+    picture = np.asarray(Image.open(tmp_path / "p.png"))
+    assert picture.shape == (48, 64, 3)
+    report = json.loads((tmp_path / "r.json").read_text())
+    jsonschema.validate(report, REPORT)
+    trace = report["frames"][0]["passes"][1]
+    assert trace["rays"]["primary"] == trace["pixels"] * 4
+    position = np.load(tmp_path / "t" / "Hybrid.position.npy")
+    assert int((position[..., 3] > 0).sum()) == trace["pixels"]
+    assert (tmp_path / "t" / "Hybrid.color.png").exists()
+
+
+def test_frames_and_numbers(tmp_path: Path) -> None:
+    done = run(
+        "nau-run",
+        SELECTIVE,
+        "--pipeline",
+        "Raster",
+        *SMALL,
+        "--frames",
+        "0:2",
+        "--quiet",
+        "-o",
+        str(tmp_path / "f.%03d.png"),
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == ""
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["f.000.png", "f.001.png", "f.002.png"]
+
+
+def test_npy_keeps_the_values(tmp_path: Path) -> None:
+    done = run("nau-run", SELECTIVE, "--pipeline", "Raster", *SMALL, "-o", str(tmp_path / "f.npy"))
+    assert done.returncode == 0, done.stderr
+    assert np.load(tmp_path / "f.npy").shape == (48, 64, 4)
+
+
+@pytest.mark.parametrize(
+    "words, status, message",
+    [
+        (
+            ["nau-run", SELECTIVE, "--pipeline", "Selectiv"],
+            1,
+            "error[R013]: project 'Selective' has no pipeline 'Selectiv'; it has 'Raster', 'Selective'"
+            " (did you mean 'Selective'?)",
+        ),
+        (
+            ["nau-run", SELECTIVE, "-o", "/nowhere/at/all.png"],
+            1,
+            "error[E002]: output '/nowhere/at/all.png' cannot be written: the folder '/nowhere/at' "
+            "does not exist",
+        ),
+        (
+            ["nau-run", SELECTIVE, "-o", "picture.gif"],
+            1,
+            "its ending must be one of .png, .exr, .npy",
+        ),
+        (["nau-run", "missing.xml"], 1, "no such file: missing.xml"),
+        (["nau-run", SELECTIVE, "--size", "12"], 2, "'12' is no size"),
+        (["nau-run", SELECTIVE, "--frames", "5:2"], 2, "the last frame comes before the first"),
+        (["nau-run", SELECTIVE, "--spp", "0"], 2, "--spp"),
+        (["nau-run"], 2, "Missing argument 'PROJECT'"),
+        (["nau-lint"], 2, "Missing argument"),
+        (["nau-lint", "missing.xml"], 1, "no such file: missing.xml"),
+        (["nau-graph", SELECTIVE, "--format", "png"], 2, "png"),
+        (["nau-fmt", SELECTIVE, "-o", "/nowhere/x.xml"], 1, "cannot be written"),
+    ],
+)
+def test_wrong_use(words: list[str], status: int, message: str) -> None:
+    done = run(*words, COLUMNS="300", TERM="dumb")
+    assert done.returncode == status
+    assert message in done.stderr
+    assert "Traceback" not in done.stderr
+    assert done.stdout == ""
+
+
+BAD = {
+    "syntax": ("<project name='P'><assets></project>", "error[X002]"),
+    "library": (
+        "<project name='P'><assets><materialLibs><materialLib filename='no.mlib'/>"
+        "</materialLibs></assets><pipelines><pipeline name='Q'><pass name='a'/></pipeline>"
+        "</pipelines></project>",
+        "error[F001]",
+    ),
+    "material": (
+        "<project name='P'><pipelines><pipeline name='Q'><pass name='a' class='quad'>"
+        "<material name='m' fromLibrary='L'/></pass></pipeline></pipelines></project>",
+        "error[R005]",
+    ),
+    "model": (
+        "<project name='P'><assets><scenes><scene name='S'><file name='bad.obj'/></scene>"
+        "</scenes></assets><pipelines><pipeline name='Q'><pass name='a'><scenes>"
+        "<scene name='S'/></scenes></pass></pipeline></pipelines></project>",
+        "error[M001]",
+    ),
+    "rays": (
+        "<project name='P'><pipelines><pipeline name='Q'><pass name='a' class='raytrace'/>"
+        "<pass name='b' class='optix'/></pipeline></pipelines></project>",
+        "error[T001]",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", BAD)
+def test_bad_projects_give_diagnostics_and_no_file(folder: Folder, kind: str) -> None:
+    text, expected = BAD[kind]
+    folder.write("bad.obj", "v 1 2 three\n")
+    folder.write("project.xml", text)
+    done = run("nau-run", "project.xml", "-o", "out.png", cwd=folder.path)
+    assert done.returncode == 1
+    assert expected in done.stderr
+    assert done.stderr.startswith("project.xml:1:")
+    assert "Traceback" not in done.stderr
+    assert sorted(p.name for p in folder.path.iterdir()) == ["bad.obj", "project.xml"]
+
+
+def test_debug_shows_the_traceback(folder: Folder) -> None:
+    folder.write("project.xml", BAD["material"][0])
+    assert "Traceback" in run("nau-run", "project.xml", "--debug", cwd=folder.path).stderr
+
+
+def test_an_existing_picture_survives_a_failed_run(folder: Folder) -> None:
+    folder.write("project.xml", BAD["material"][0])
+    folder.write("out.png", "old")
+    run("nau-run", "project.xml", "-o", "out.png", cwd=folder.path)
+    assert (folder.path / "out.png").read_text() == "old"
+
+
+def test_without_a_driver_the_message_says_what_to_install() -> None:
+    done = run(
+        "nau-run",
+        SELECTIVE,
+        *SMALL,
+        LIBGL_DRIVERS_PATH="/nowhere",
+        __EGL_VENDOR_LIBRARY_DIRS="/nowhere",
+        __EGL_VENDOR_LIBRARY_FILENAMES="/nowhere/x.json",
+    )
+    assert done.returncode == 1
+    assert "error[D101]: no OpenGL 4.5 driver" in done.stderr
+    assert "apt-get install libegl1 libgl1 libgl1-mesa-dri" in done.stderr
+
+
+def test_doctor() -> None:
+    done = run("nau-run", "--doctor")
+    assert done.returncode == 0
+    for word in ("OpenGL", "Embree", "threads", "[exr]"):
+        assert word in done.stdout
+
+
+def test_lint_statuses_and_formats(folder: Folder) -> None:
+    assert run("nau-lint", "projects", "materials").returncode == 0
+    folder.write("project.xml", BAD["rays"][0])
+    done = run("nau-lint", "project.xml", "--format", "json", cwd=folder.path)
+    assert done.returncode == 1
+    assert "T001" in {d["rule"] for d in json.loads(done.stdout)}
+
+
+def test_fmt_round_trip_and_check(folder: Folder) -> None:
+    done = run("nau-fmt", SELECTIVE, "--to", "yaml")
+    assert done.stdout == (PROJECTS / "selective" / "project.yaml").read_text()
+    folder.write("p.xml", "<project name=P ></project>")
+    assert run("nau-fmt", "p.xml", "--check", cwd=folder.path).returncode == 1
+    assert run("nau-fmt", "p.xml", "-o", "p.xml", cwd=folder.path).returncode == 0
+    assert run("nau-fmt", "p.xml", "--check", cwd=folder.path).returncode == 0

@@ -1,0 +1,38 @@
+"""nau-graph's formats on the selective demo."""
+
+from __future__ import annotations
+
+import json
+
+from lxml import etree
+
+import nau_py
+from nau_py.graph.export import export
+from tests.conftest import PROJECTS
+
+
+def make() -> nau_py.Plan:
+    return nau_py.plan(nau_py.load(PROJECTS / "selective" / "project.xml"))
+
+
+def test_json_lists_passes_and_edges() -> None:
+    data = json.loads(export(make(), "json"))
+    assert [p["name"] for p in data["passes"]] == ["raster", "trace", "combine"]
+    assert {(e["from"], e["to"], e["resource"]) for e in data["edges"]} == {
+        ("raster", "trace", "texture Hybrid::position"),
+        ("raster", "combine", "texture Hybrid::color"),
+        ("raster", "combine", "texture Hybrid::position"),
+        ("trace", "combine", "texture Hybrid::radiance"),
+    }
+
+
+def test_svg_is_well_formed_and_shows_every_pass() -> None:
+    root = etree.fromstring(export(make(), "svg").encode())
+    texts = [t.text for t in root.iter("{*}text")]
+    for name in ("raster", "trace", "combine", "Hybrid::position", "window"):
+        assert name in texts
+
+
+def test_dot_and_mermaid_quote_names() -> None:
+    assert '"Hybrid::position"' in export(make(), "dot")
+    assert 'p1["trace (raytrace)"]' in export(make(), "mermaid")
