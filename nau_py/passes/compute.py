@@ -52,7 +52,7 @@ class ComputeClass:
         if not isinstance(pass_, ComputePass) or pass_.material is None:
             return
         resources = frame.session.resources
-        process(list(pass_.preProcess), frame)
+        process(pass_.preProcess, frame)
         library = pass_.material.fromLibrary or DEFAULT_LIBRARY
         material = frame.world.materials.get(library, pass_.material.name or "")
         program = resources.program(*material.program) if material else None
@@ -67,4 +67,4 @@ class ComputeClass:
             program.mgl.run(*groups)
         unbind_material(material)
         resources.barrier()
-        process(list(pass_.postProcess), frame)
+        process(pass_.postProcess, frame)

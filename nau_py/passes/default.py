@@ -25,7 +25,7 @@ class DefaultClass:
 
         frame.camera = frame.world.camera(pass_.camera_name)
         target = begin(pass_, frame, uses_camera=True)
-        process(list(pass_.preProcess), frame)
+        process(pass_.preProcess, frame)
         context = draw_context(
             pass_,
             frame,
@@ -38,5 +38,5 @@ class DefaultClass:
         objects = frame.world.objects(pass_.scene_names)
         draw(draw_list(objects, materials.__getitem__), context)
         frame.session.resources.barrier()
-        process(list(pass_.postProcess), frame)
+        process(pass_.postProcess, frame)
         note_pixels(record, frame)

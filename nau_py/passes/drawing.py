@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from nau_py.model.linked import Project
-from nau_py.model.passes import Pass, ProcessTexture
-from nau_py.passes.access import target_reference, texture
+from nau_py.model.passes import Pass, ProcessBuffer, ProcessTexture
+from nau_py.passes.access import buffer, target_reference, texture
 from nau_py.passes.frame import FrameContext, PassRecord
 from nau_py.scene.mesh import F64
 from nau_py.scene.viewport import Rect
@@ -63,6 +64,8 @@ def begin(pass_: Pass, frame: FrameContext, uses_camera: bool, clears: bool = Tr
     frame.rect = rect
     reset_state()
     target.bind(rect)
+    for index, name in enumerate(viewport_names(pass_)[1:], 1):
+        target.add_viewport(index, frame.world.viewport(name))
     if clears:
         depth_writes = bool(pass_value(project, pass_, "DEPTH_MASK"))
         if pass_value(project, pass_, "COLOR_CLEAR"):
@@ -105,18 +108,24 @@ def identity() -> F64:
     return np.eye(4)
 
 
-def process(items: list[object], frame: FrameContext) -> None:
+def process(items: Sequence[ProcessTexture | ProcessBuffer], frame: FrameContext) -> None:
     """Run pre- or post-process items (nau-format.md, 4.5)."""
     resources = frame.session.resources
     for item in items:
-        if not isinstance(item, ProcessTexture):
+        settings = {name: setting.parts[0] for name, setting in item.settings.items()}
+        if isinstance(item, ProcessBuffer):
+            storage = resources.buffer(buffer(item.name, item.fromLibrary).name)
+            if storage is not None and settings.get("CLEAR"):
+                storage.clear()
             continue
         found = resources.texture(texture(item.name, item.fromLibrary).name)
         if found is None:
             continue
-        settings = {name: setting.parts[0] for name, setting in item.settings.items()}
         if settings.get("CLEAR"):
             found.clear()
+        level = int(frame.project.number(settings.get("CLEAR_LEVEL"), -1))
+        if 0 <= level < found.levels:
+            found.clear(level)
         if settings.get("MIPMAP"):
             found.generate_mipmaps()
 

@@ -72,9 +72,9 @@ class QuadClass:
         from nau_py.raster.draw import DrawItem, draw
 
         target = begin(pass_, frame, uses_camera=False)
-        process(list(pass_.preProcess), frame)
+        process(pass_.preProcess, frame)
         context = draw_context(pass_, frame, target, identity(), identity(), lights=False)
         draw([DrawItem(quad_mesh(), 0, self.material(pass_, frame), identity())], context)
         frame.session.resources.barrier()
-        process(list(pass_.postProcess), frame)
+        process(pass_.postProcess, frame)
         note_pixels(record, frame)

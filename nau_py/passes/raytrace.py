@@ -63,7 +63,7 @@ class RaytraceClass:
         frame.camera = frame.world.camera(pass_.camera_name)
         target, rect = target_and_rect(pass_, frame, uses_camera=True)
         frame.rect = rect
-        process(list(pass_.preProcess), frame)
+        process(pass_.preProcess, frame)
         state = _state(pass_, frame.session)
         inputs = _inputs(pass_, frame)
         mask = _mask(pass_, inputs)
@@ -84,7 +84,7 @@ class RaytraceClass:
             lambda done, total: frame.session.progress(name, done, total),
         )
         _store(target, pixels, result.colours)
-        process(list(pass_.postProcess), frame)
+        process(pass_.postProcess, frame)
         record.pixels = len(pixels)
         record.rays = dict(result.counts.rays)
         record.avoided = (width * height - len(pixels)) * samples

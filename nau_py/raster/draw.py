@@ -96,11 +96,14 @@ def set_uniforms(program: Program, context: DrawContext) -> None:
     if material is None:
         return
     for source in material.uniforms:
-        if source.block:
-            continue
         value = resolve(context, source.type, source.context, source.component, source.id)
-        if value is not None:
+        if value is None:
+            continue
+        if source.block:
+            context.resources.blocks.set(program.mgl.glo, source.block, source.uniform, value)
+        else:
             program.set(source.uniform, value)
+    context.resources.blocks.bind()
 
 
 def draw(items: list[DrawItem], context: DrawContext) -> None:

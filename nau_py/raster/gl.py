@@ -150,9 +150,9 @@ def upload_face(
     )
 
 
-def clear_texture(name: int, levels: int, layout: int, kind: int) -> None:
-    """Fill every level with zero."""
-    for level in range(levels):
+def clear_texture(name: int, levels: list[int], layout: int, kind: int) -> None:
+    """Fill levels with zero."""
+    for level in levels:
         GL.glClearTexImage(name, level, layout, kind, None)
 
 
@@ -190,6 +190,19 @@ def active_uniforms(program: int) -> list[tuple[str, int, int, int]]:
     properties = [GL.GL_LOCATION, GL.GL_TYPE, GL.GL_ARRAY_SIZE]
     listed = _active(program, GL.GL_UNIFORM, properties)
     return [(n.removesuffix("[0]"), v[0], v[1], max(v[2], 1)) for n, v in listed if v[0] >= 0]
+
+
+def active_blocks(program: int) -> list[tuple[str, int]]:
+    """(name, bytes) of the uniform blocks, by block index."""
+    listed = _active(program, GL.GL_UNIFORM_BLOCK, [GL.GL_BUFFER_DATA_SIZE])
+    return [(name, values[0]) for name, values in listed]
+
+
+def active_block_members(program: int) -> list[tuple[str, int, int, int, int]]:
+    """(name, type, byte offset, block index, matrix stride) of the uniforms inside blocks."""
+    properties = [GL.GL_TYPE, GL.GL_OFFSET, GL.GL_BLOCK_INDEX, GL.GL_MATRIX_STRIDE]
+    listed = _active(program, GL.GL_UNIFORM, properties)
+    return [(n, v[0], v[1], v[2], max(v[3], 0)) for n, v in listed if v[2] >= 0]
 
 
 def active_inputs(program: int) -> list[tuple[str, int]]:

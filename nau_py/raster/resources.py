@@ -10,12 +10,15 @@ import numpy as np
 from nau_py.diagnostic import Diagnostic, error, warning
 from nau_py.errors import NauError, ProjectError, ShaderError
 from nau_py.model.attributes.texture import channels
+from nau_py.model.buffer import Buffer
 from nau_py.model.linked import Project
 from nau_py.model.target import RenderTarget
 from nau_py.model.texture import ArrayOfTextures, CubeMap
 from nau_py.model.texture import Texture as TextureNode
 from nau_py.paths import resolve
 from nau_py.raster import gl
+from nau_py.raster.blocks import UniformBlocks
+from nau_py.raster.buffers import initial_content
 from nau_py.raster.device import Device
 from nau_py.raster.geometry import Geometry
 from nau_py.raster.programs import Program, compile_program
@@ -39,6 +42,7 @@ class Resources:
         self.project = project
         self.samplers = Samplers()
         self.geometry = Geometry(device.ctx)
+        self.blocks = UniformBlocks(device.ctx)
         self.window = window_target(*window)
         self.diagnostics: list[Diagnostic] = []
         self._targets: dict[str, Target] = {}
@@ -157,16 +161,30 @@ class Resources:
         return texture
 
     def buffer(self, name: str) -> Any:
-        """A GPU buffer, zero-filled at first; None where it is undefined or empty."""
+        """A GPU buffer with its initial content; None where it is undefined or empty."""
         if name not in self._buffers:
             node = self.project.names("buffer").get(name)
-            size = 0
-            if node is not None and not isinstance(node, ArrayOfTextures):
-                size = int(self.project.value(node, "BUFFER", "SIZE")[0])  # type: ignore[arg-type]
-            self._buffers[name] = self.device.ctx.buffer(reserve=size) if size else None
-            if size:
-                self._buffers[name].clear()
+            self._buffers[name] = None
+            if isinstance(node, Buffer):
+                try:
+                    content = initial_content(self.project, node)
+                except (OSError, ValueError) as problem:
+                    message = f"buffer '{name}': its file cannot be read: {problem}"
+                    self.diagnostics.append(error("B001", node.location, message))
+                    content = b""
+                self._buffers[name] = self.device.ctx.buffer(content) if content else None
         return self._buffers[name]
+
+    def clear_buffers_by_frame(self) -> None:
+        """Fill the buffers whose CLEAR is BY_FRAME with zero (nau-format.md, 11.1)."""
+        for name, node in self.project.names("buffer").items():
+            made = self._buffers.get(name)
+            if (
+                made is not None
+                and isinstance(node, Buffer)
+                and (self.project.value(node, "BUFFER", "CLEAR")[0] == "BY_FRAME")
+            ):
+                made.clear()
 
     def program(self, library: str, name: str) -> Program | None:
         """A program; None, with its diagnostics, where it does not compile."""
@@ -176,7 +194,9 @@ class Resources:
             self._programs[key] = None
             if found is not None:
                 try:
-                    self._programs[key] = compile_program(self.device.ctx, library, found[1])
+                    made = compile_program(self.device.ctx, library, found[1])
+                    self.blocks.attach(made.mgl.glo)
+                    self._programs[key] = made
                 except ShaderError as problem:
                     self.diagnostics += problem.diagnostics
         return self._programs[key]

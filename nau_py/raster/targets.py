@@ -72,6 +72,11 @@ class Target:
         GL.glEnable(GL.GL_SCISSOR_TEST)
         GL.glScissor(*rect.scissor)
 
+    def add_viewport(self, index: int, rect: Rect) -> None:
+        """Set ``gl_ViewportIndex`` ``index`` with its scissor rectangle."""
+        GL.glViewportIndexedf(index, rect.x, rect.y, rect.width, rect.height)
+        GL.glScissorIndexed(index, *rect.scissor)
+
     def clear_color(self, colour: tuple[float, float, float, float]) -> None:
         """Fill the colour textures inside the scissor rectangle, all with one colour."""
         for index, attachment in enumerate(self.colors):

@@ -40,9 +40,10 @@ class Texture:
             self.glo, self.width, self.height, self.format.layout, self.format.kind, wanted
         )
 
-    def clear(self) -> None:
-        """Fill every level with zero."""
-        gl.clear_texture(self.glo, self.levels, self.format.layout, self.format.kind)
+    def clear(self, level: int | None = None) -> None:
+        """Fill a level, or every one, with zero."""
+        chosen = range(self.levels) if level is None else [level]
+        gl.clear_texture(self.glo, list(chosen), self.format.layout, self.format.kind)
 
     def generate_mipmaps(self) -> None:
         if self.levels > 1:

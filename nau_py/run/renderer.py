@@ -127,6 +127,7 @@ class Renderer:
             self._session, self._next = None, 0
         records: list[PassRecord] = []
         start = perf_counter()
+        _ = self.session  # loading is not part of a frame's time
         while self._next <= frame:
             start = perf_counter()
             records = self._step(self._next)
@@ -145,6 +146,7 @@ class Renderer:
 
     def _step(self, index: int) -> list[PassRecord]:
         session = self.session
+        session.resources.clear_buffers_by_frame()
         width, height = self._size
         camera = session.world.camera(None)
         timer = index * self.time_step * 1000.0

@@ -7,8 +7,9 @@ from pathlib import Path
 
 from nau_py.model.library import DEFAULT_LIBRARY, qualified
 from nau_py.model.linked import Project
-from nau_py.model.material import Material, ValueOf
+from nau_py.model.material import ImageUnits, Material, ValueOf
 from nau_py.model.node import Setting
+from nau_py.model.texture import ArrayOfTextures
 from nau_py.model.values import Scalar
 from nau_py.scene.model_material import DEFAULT_COLOURS, ModelMaterial
 
@@ -151,6 +152,8 @@ def from_library(project: Project, library: str, node: Material) -> RenderMateri
             material.images[image.UNIT] = ImageBinding(
                 qualified(image.texture, library), parts_of(image.settings)
             )
+    for images in node.arraysOfImageTexture:
+        _bind_images(project, material, library, images)
     for array in node.arraysOfTextures:
         _bind_array(project, material, library, array.name, array.firstUnit)
     buffers = project.names("buffer")
@@ -171,13 +174,28 @@ def from_library(project: Project, library: str, node: Material) -> RenderMateri
     return material
 
 
+def _bind_images(
+    project: Project, material: RenderMaterial, library: str, node: ImageUnits
+) -> None:
+    full = qualified(node.textureArray or "", library)
+    array = project.names("texture array").get(full)
+    if isinstance(array, ArrayOfTextures) and node.FIRST_UNIT is not None:
+        for index in range(texture_count(project, array)):
+            binding = ImageBinding(f"{full}_{index}", parts_of(node.settings))
+            material.images[node.FIRST_UNIT + index] = binding
+
+
+def texture_count(project: Project, array: ArrayOfTextures) -> int:
+    """How many textures an array has."""
+    return int(project.value(array, "ARRAY_OF_TEXTURES", "TEXTURE_COUNT")[0])
+
+
 def _bind_array(
     project: Project, material: RenderMaterial, library: str, name: str | None, first: int | None
 ) -> None:
     full = qualified(name or "", library)
     array = project.names("texture array").get(full)
-    if array is None or first is None:
+    if not isinstance(array, ArrayOfTextures) or first is None:
         return
-    count = int(project.value(array, "ARRAY_OF_TEXTURES", "TEXTURE_COUNT")[0])  # type: ignore[arg-type]
-    for index in range(count):
+    for index in range(texture_count(project, array)):
         material.textures[first + index] = TextureBinding(f"{full}_{index}")

@@ -265,3 +265,69 @@ def test_alpha_is_tested_and_textures_are_lower_left(folder: Folder) -> None:
     image = nau_py.Renderer(folder.load()).render().image
     assert image[0, 0].tolist() == [255, 0, 0, 255]
     assert image[-1, 0].tolist() == [0, 0, 255, 255]
+
+
+def test_uniform_blocks_are_shared_by_name(folder: Folder) -> None:
+    """``valueof block=``: members of every type at the driver's offsets (nau-format.md, 6.8)."""
+    frag = (
+        "#version 330\nlayout(std140) uniform Lights { float f; vec3 dir; mat4 m; vec4 col; };\n"
+        "out vec4 c;\nvoid main() { c = vec4(dir.z, m[3][2], col.g, f); }\n"
+    )
+    sources = (
+        ("f", "RENDERER", "CURRENT", "TEXTURE_COUNT"),
+        ("dir", "LIGHT", "Sun", "DIRECTION"),
+        ("m", "CAMERA", "C", "VIEW_MATRIX"),
+        ("col", "COLOR", "CURRENT", "DIFFUSE"),
+    )
+    values = "".join(
+        f'<valueof uniform="{u}" block="Lights" type="{t}" context="{x}" component="{k}"/>'
+        for u, t, x, k in sources
+    )
+    targets = (
+        '<renderTarget name="rt"><SIZE width="4" height="4"/><colors>'
+        '<color name="c" internalFormat="RGBA32F"/></colors></renderTarget>'
+    )
+    frame = render(
+        folder,
+        frag,
+        QUAD.format('<renderTarget name="rt" fromLibrary="L"/>'),
+        targets=targets,
+        values=values,
+        color='<color><DIFFUSE r="0.25" g="0.5" b="1" a="1"/></color>',
+        keep=True,
+    )
+    np.testing.assert_allclose(frame.targets["L::c"][0, 0], [-2, -3, 0.5, 0])
+
+
+def test_buffers_begin_with_their_file_and_compute_reads_them(folder: Folder) -> None:
+    folder.write("data.txt", "1 2.5 3\n4 5 6")
+    folder.write(
+        "c.comp",
+        "#version 430\nlayout(local_size_x = 1) in;\n"
+        "struct R { int i; float f; };\n"
+        "layout(std430, binding = 2) buffer B { R r[]; };\n"
+        "layout(rgba32f) uniform image2D img;\n"
+        "void main() { imageStore(img, ivec2(0), vec4(r[0].i, r[0].f, r[2].i, r[3].f)); }\n",
+    )
+    folder.write(
+        "l.mlib",
+        '<materialLib name="L"><textures><texture name="t"><WIDTH value=2 /><HEIGHT value=2 />'
+        '<INTERNAL_FORMAT value="RGBA32F"/></texture></textures>'
+        '<shaders><shader name="s" cs="c.comp"/></shaders>'
+        '<buffers><buffer name="b"><structure><field value="INT"/><field value="FLOAT"/></structure>'
+        '<DIM x=4 y=1 z=1 /><file name="data.txt"/></buffer></buffers>'
+        '<materials><material name="m"><imageTextures><imageTexture UNIT=0 texture="t"/>'
+        '</imageTextures><buffers><buffer name="b"><TYPE value="SHADER_STORAGE"/>'
+        '<BINDING_POINT value=2 /></buffer></buffers><shader name="s"><values>'
+        '<valueof uniform="img" type="IMAGE_TEXTURE" context="CURRENT" component="UNIT" id="0"/>'
+        "</values></shader></material></materials></materialLib>",
+    )
+    folder.write(
+        "project.xml",
+        '<project name="P" width=4 height=4><assets><materialLibs><materialLib filename="l.mlib"/>'
+        '</materialLibs></assets><pipelines><pipeline name="Q"><pass name="c" class="compute">'
+        '<material name="m" fromLibrary="L" dimX=1 /></pass></pipeline></pipelines></project>',
+    )
+    frame = nau_py.Renderer(folder.load()).render()
+    # records (int, float): (1, 2.5) (3, 4) (5, 6), then zeros up to DIM
+    assert frame.targets["L::t"][-1, 0].tolist() == [1, 2.5, 5, 0]

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from nau_py.diagnostic import Diagnostic
 from nau_py.lint.rule import ERROR, WARNING, Facts, check, rule
 from nau_py.lint.walk import nodes
-from nau_py.model.passes import Script
+from nau_py.model.events import Interpolator, Route, Sensor
+from nau_py.model.passes import SceneReferences, Script
 
 L001 = rule(
     "L001",
@@ -16,6 +17,22 @@ L001 = rule(
     "This version does not run Lua: the pass or pipeline goes on as if there were no script.",
     "<preScript file='a.lua' script='f'/>",
     "write the value into the project file",
+)
+L003 = rule(
+    "L003",
+    WARNING,
+    "Animation is not run",
+    "This version does not run sensors, interpolators and routes: things stand where they begin.",
+    "<sensor name='t' class='TimeSensor'/>",
+    "write the position into the project file",
+)
+L004 = rule(
+    "L004",
+    WARNING,
+    "Indirect drawing is ignored",
+    "This version draws whole objects; the buffer of draw commands is not used.",
+    "<scenes drawIndirectBuffer='L::b'>",
+    "<scenes>",
 )
 L002 = rule(
     "L002",
@@ -39,6 +56,7 @@ for id_, severity, title, why in (
         "Output cannot be written",
         "The file could not be written, or its ending is unknown.",
     ),
+    ("B001", ERROR, "Buffer file unreadable", "The initial content of a buffer could not be read."),
     ("G001", ERROR, "GLSL error", "The driver rejects a shader; the place is in the shader file."),
     ("G002", ERROR, "Shader file unreadable", "A shader file could not be read."),
     ("G003", ERROR, "Shader does not link", "The stages of a program do not fit together."),
@@ -75,6 +93,27 @@ def scripts(facts: Facts) -> Iterator[Diagnostic]:
             yield L001.at(
                 node.location, f"<{node.tag}> '{node.script}' of '{node.file}' is not run"
             )
+
+
+@check
+def animation(facts: Facts) -> Iterator[Diagnostic]:
+    """Sensors, interpolators and routes, which are not run."""
+    assets = facts.project.assets
+    listed: list[Sensor | Interpolator | Route] = []
+    listed += assets.sensors
+    listed += assets.interpolators
+    listed += assets.routes
+    for node in listed:
+        yield L003.at(node.location, f"{node.tag} '{node.name}' is not run")
+
+
+@check
+def indirect(facts: Facts) -> Iterator[Diagnostic]:
+    """Buffers of draw commands, which are not used."""
+    for node in nodes(facts.project):
+        if isinstance(node, SceneReferences) and node.drawIndirectBuffer:
+            where = node.where("drawIndirectBuffer")
+            yield L004.at(where, f"draw commands '{node.drawIndirectBuffer}' are not used")
 
 
 @check

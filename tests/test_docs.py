@@ -1,0 +1,42 @@
+"""The documentation: its first project renders, its links lead somewhere."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+from tests.conftest import ROOT, Folder
+
+import nau_py
+
+DOCS = ROOT / "docs"
+
+
+def test_the_first_project_renders(folder: Folder) -> None:
+    text = (DOCS / "first-project.md").read_text()
+    blocks = re.findall(r"```xml\n(<project.*?)```", text, re.DOTALL)
+    folder.write("box.xml", blocks[0])
+    project = folder.load("box.xml")
+    assert nau_py.lint(project) == []
+    image = nau_py.Renderer(project, size=(64, 64)).render().image
+    assert len(np.unique(image.reshape(-1, 4), axis=0)) >= 4
+
+
+def test_every_built_in_name_in_the_docs_exists() -> None:
+    from nau_py.model.builtins import BUILTIN_PROGRAMS
+
+    for page in DOCS.glob("*.md"):
+        for name in re.findall(r'file="builtin" proc="(\w+)"', page.read_text()):
+            assert name in BUILTIN_PROGRAMS, page
+
+
+def test_links_lead_somewhere() -> None:
+    for page in [ROOT / "README.md", *DOCS.glob("*.md")]:
+        for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text()):
+            assert (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+def test_the_reference_is_up_to_date() -> None:
+    from nau_py.cli.reference import reference_page
+
+    assert (DOCS / "reference.md").read_text() == reference_page(), "run scripts/reference"
