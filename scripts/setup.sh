@@ -20,7 +20,7 @@ make_environment() { # make_environment EXTRAS
         return 1
     fi
     if [ ! -x .venv/bin/pip ]; then
-        if ! "$python" -m venv .venv 2>/dev/null; then
+        if ! "$python" -m venv .venv >/dev/null 2>&1; then
             rm -rf .venv
             if is_root && command -v apt-get >/dev/null; then
                 apt_install python3-venv

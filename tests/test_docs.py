@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 import numpy as np
-from tests.conftest import ROOT, Folder
 
 import nau_py
+from tests.conftest import ROOT, Folder
 
 DOCS = ROOT / "docs"
 

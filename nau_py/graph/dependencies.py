@@ -16,7 +16,11 @@ Hazard = Literal["read after write", "write after read", "write after write"]
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """``later`` must run after ``earlier`` because of ``resource``. Indices into the pipeline."""
+    """``later`` must run after ``earlier`` because of ``resource``. Indices into the pipeline.
+
+    ``earlier`` < ``later`` always: what a pass reads before it is written is the previous frame's.
+    File order therefore satisfies every edge, and is the order in which passes run.
+    """
 
     earlier: int
     later: int
@@ -36,15 +40,6 @@ class PassGraph:
 
     def writers(self, resource: Resource) -> list[int]:
         return [i for i, access in enumerate(self.accesses) if resource in access.writes]
-
-    def order(self) -> list[int]:
-        """Indices in execution order: file order, made stable under the edges."""
-        import networkx as nx  # slow to import, and lint often ends before it is needed
-
-        graph = nx.DiGraph()
-        graph.add_nodes_from(range(len(self.passes)))
-        graph.add_edges_from((e.earlier, e.later) for e in self.edges)
-        return list(nx.lexicographical_topological_sort(graph))
 
 
 def access_of(project: Project, pass_: Pass, contracts: Contracts) -> Access:

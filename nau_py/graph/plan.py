@@ -113,7 +113,7 @@ def make_plan(
             index in kept,
             "" if index in kept else _reason(graph, index),
         )
-        for index in graph.order()
+        for index in range(len(graph.passes))
     ]
     output = outputs[0] if outputs else WINDOW
     return Plan(project.name, pipeline.name or "", steps, graph, output)

@@ -10,8 +10,8 @@ import numpy as np
 
 from nau_py.paths import resolve
 from nau_py.scene.mesh import F32, F64, Group, Mesh, SceneObject, pad4
+from nau_py.scene.model_error import ModelError
 from nau_py.scene.model_material import ModelMaterial
-from nau_py.scene.obj import ModelError
 
 _POST_PROCESS = (
     assimp_py.Process_CalcTangentSpace
@@ -40,7 +40,7 @@ _UNITS = {
 def load_assimp(path: Path, swap_yz: bool) -> tuple[list[SceneObject], list[ModelMaterial]]:
     """The objects of a model file, with node transforms, and its materials.
 
-    Raises :class:`~nau_py.scene.obj.ModelError`.
+    Raises :class:`~nau_py.scene.model_error.ModelError`.
     """
     try:
         scene = assimp_py.import_file(str(path), _POST_PROCESS)

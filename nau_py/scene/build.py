@@ -15,8 +15,9 @@ from nau_py.paths import resolve
 from nau_py.scene import primitives
 from nau_py.scene.assimp import load_assimp
 from nau_py.scene.mesh import Group, Mesh, SceneObject, merge, pad4, transform_mesh
-from nau_py.scene.model_material import ModelMaterial
-from nau_py.scene.obj import ModelError, load_obj
+from nau_py.scene.model_error import ModelError
+from nau_py.scene.model_material import PRIMITIVE_MATERIAL, ModelMaterial
+from nau_py.scene.obj import load_obj
 from nau_py.scene.transforms import transform_of
 
 ASSIMP_SUFFIXES = [
@@ -99,7 +100,7 @@ class SceneBuilder:
             setting = (node.sphere if set_ == "SPHERE" else node.grid).get(name)
             return self.project.number(setting.parts[0]) if setting else default
 
-        material = node.material or primitives.DEFAULT_MATERIAL
+        material = node.material or PRIMITIVE_MATERIAL
         if node.type == "BOX":
             return primitives.box(material)
         if node.type == "SQUARE":

@@ -5,6 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+OBJ_MATERIAL = "DefaultOBJMaterial"
+"""The material of faces in an OBJ file without a material library."""
+PRIMITIVE_MATERIAL = "__Light Grey"
+"""The material of built-in primitives that name none."""
+
 Colour = tuple[float, float, float, float]
 
 DEFAULT_COLOURS: dict[str, tuple[float, ...]] = {

@@ -7,8 +7,9 @@ from pathlib import Path
 
 from nau_py.model.linked import Project
 from nau_py.paths import resolve
-from nau_py.scene.obj import DEFAULT_MATERIAL, ModelError, load_mtl
-from nau_py.scene.primitives import DEFAULT_MATERIAL as PRIMITIVE_MATERIAL
+from nau_py.scene.model_error import ModelError
+from nau_py.scene.model_material import OBJ_MATERIAL, PRIMITIVE_MATERIAL
+from nau_py.scene.mtl import load_mtl
 
 _LIBRARY = re.compile(rb"^[ \t]*m\w*[ \t]+(.+?)[ \t\r]*$", re.MULTILINE)
 
@@ -35,7 +36,7 @@ def default_material_names(project: Project) -> frozenset[str] | None:
 def _obj_names(path: Path) -> set[str]:
     libraries = _LIBRARY.findall(path.read_bytes())
     if not libraries:
-        return {DEFAULT_MATERIAL}
+        return {OBJ_MATERIAL}
     names: set[str] = set()
     for library in libraries:
         try:

@@ -6,7 +6,6 @@ import numpy as np
 
 from nau_py.scene.mesh import F32, F64, Group, Mesh, pad4
 
-DEFAULT_MATERIAL = "__Light Grey"
 _AXIS_MATERIALS = ("__Emission Red", "__Emission Green", "__Emission Blue")
 
 

@@ -1,0 +1,11 @@
+"""What model readers raise."""
+
+from __future__ import annotations
+
+
+class ModelError(Exception):
+    """A model file cannot be read; ``line`` is 0 where no line is to blame."""
+
+    def __init__(self, message: str, line: int = 0) -> None:
+        super().__init__(message)
+        self.line = line
