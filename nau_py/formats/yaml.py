@@ -11,7 +11,7 @@ from typing import Any
 
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
-from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
 from nau_py.formats.settings import keys_of
 from nau_py.formats.tolerant import XmlSyntaxError
@@ -182,6 +182,8 @@ class YamlReader:
         return self.node(marker.tag, item, cls, where)
 
     def _unknown(self, tag: str, value: object, where: Location) -> list[Element]:
+        if tag.startswith("<"):  # the name of an attribute too: see _append
+            tag = tag[1:].rstrip(">")
         if isinstance(value, CommentedSeq):
             return [e for i in value for e in self._unknown(tag, i, where)]
         element = Element(tag, location=where)
@@ -203,6 +205,9 @@ def load_yaml(text: str, file: str) -> CommentedMap:
         mark = error.problem_mark or error.context_mark
         where = Location(file, mark.line + 1, mark.column + 1) if mark else Location(file, 1, 1)
         raise XmlSyntaxError(where, str(error.problem or error.context)) from None
+    except (YAMLError, ValueError) as error:  # characters that YAML forbids, numbers beyond reason
+        first = str(error).splitlines()[0]
+        raise XmlSyntaxError(Location(file, 1, 1), first) from None
     if not isinstance(data, CommentedMap):
         raise XmlSyntaxError(Location(file, 1, 1), "a mapping is expected at the top")
     return data
@@ -280,7 +285,7 @@ def _add_child(
                 keys = keys_of(attribute)
                 _add_setting(data, child, keys, attribute.type)
                 return
-    data.setdefault(child.tag, CommentedSeq()).append(_unknown_data(child))
+    _append(data, child.tag, _unknown_data(child))
 
 
 def _add_setting(data: CommentedMap, child: Element, keys: list[str], data_type: DataType) -> None:
@@ -315,7 +320,7 @@ def _wrapper_data(child: Element, marker: Items | Variants, registry: Registry) 
     data["items"] = items
     for other in child.children:
         if other.tag not in tags:
-            data.setdefault(other.tag, CommentedSeq()).append(_unknown_data(other))
+            _append(data, other.tag, _unknown_data(other))
     return data
 
 
@@ -325,10 +330,16 @@ def _repeat(earlier: Any, child: Element) -> CommentedMap:
     return data
 
 
+def _append(data: CommentedMap, tag: str, value: Any) -> None:
+    """Add to the list of unknown elements ``tag``: under ``<tag>`` where the key is taken."""
+    key = tag if isinstance(data.get(tag, CommentedSeq()), CommentedSeq) else f"<{tag}>"
+    data.setdefault(key, CommentedSeq()).append(value)
+
+
 def _unknown_data(element: Element) -> CommentedMap:
     data = CommentedMap(element.attributes)
     for child in element.children:
-        data.setdefault(child.tag, CommentedSeq()).append(_unknown_data(child))
+        _append(data, child.tag, _unknown_data(child))
     return data
 
 

@@ -87,3 +87,9 @@ def test_latin1_files_are_read(tmp_path: Path) -> None:
     path = tmp_path / "project.xml"
     path.write_bytes('<project name="Praça"/>'.encode("latin-1"))
     assert nau_py.load(path).file.name == "Praça"
+
+
+def test_characters_that_yaml_forbids_are_a_problem(folder: Folder) -> None:
+    folder.write("project.yaml", "name: P\f\n")
+    (problem,) = folder.load("project.yaml").problems
+    assert problem.kind is ProblemKind.SYNTAX

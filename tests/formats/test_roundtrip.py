@@ -142,3 +142,9 @@ def test_yaml_is_idiomatic(folder: Folder) -> None:
         "STACKS: side",
     ):
         assert line in text
+
+
+def test_an_unknown_child_may_be_called_like_an_attribute(folder: Folder) -> None:
+    text = '<project name="P"><name x="1"/><odd y="2" z="3"><y z="4"/></odd></project>'
+    project = nau_py.load(folder.write("project.xml", text))
+    assert reread(project, project.file, "yaml", folder.path / "again.yaml") == project.file
