@@ -90,7 +90,7 @@ def test_lint_and_plan_need_no_gl_and_no_embree() -> None:
         "import sys, nau_py\n"
         "p = nau_py.load('projects/selective/project.xml')\n"
         "assert not [d for d in nau_py.lint(p) if d.severity == 'error']\n"
-        "assert len(nau_py.plan(p).running) == 3\n"
+        "assert len(nau_py.plan(p).running) == 4\n"
         "bad = {'moderngl', 'OpenGL', 'embreex'} & set(sys.modules)\n"
         "assert not bad, bad\n"
     )

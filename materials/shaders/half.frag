@@ -1,17 +1,11 @@
-#version 330
-
 // Colour, and world position with the mask: 1 in the lower half of the target.
+// Comes after sun.frag.
 
 in vec3 worldPosition;
 in vec3 worldNormal;
 in vec2 uv;
 in vec3 light;
 
-uniform vec4 lightColor;
-uniform vec4 diffuse;
-uniform vec4 emission;
-uniform int texCount;
-uniform sampler2D texUnit;
 uniform vec2 targetSize;
 
 layout(location = 0) out vec4 outColor;
@@ -19,10 +13,9 @@ layout(location = 1) out vec4 outPosition;
 
 void main() {
     float mask = gl_FragCoord.y < targetSize.y * 0.5 ? 1.0 : 0.0;
-    vec4 texel = texCount == 0 ? vec4(1.0) : texture(texUnit, uv);
-    if (mask == 0.0 && texel.a <= 0.25) discard;
-    vec3 base = diffuse.rgb * texel.rgb;
-    float cosine = max(dot(normalize(worldNormal), -normalize(light)), 0.0);
-    outColor = vec4(base * (lightColor.rgb * cosine + 0.3) + emission.rgb, 1.0);
+    vec4 t = texel(uv);
+    if (mask == 0.0 && t.a <= 0.25) discard;
+    vec3 colour = underTheSun(worldPosition, normalize(worldNormal), light, diffuse.rgb * t.rgb);
+    outColor = vec4(colour, 1.0);
     outPosition = vec4(worldPosition, mask);
 }

@@ -86,7 +86,7 @@ def test_run_writes_picture_report_and_targets(tmp_path: Path) -> None:
     assert picture.shape == (48, 64, 3)
     report = json.loads((tmp_path / "r.json").read_text())
     jsonschema.validate(report, REPORT)
-    trace = report["frames"][0]["passes"][1]
+    trace = report["frames"][0]["passes"][2]
     assert trace["rays"]["primary"] == trace["pixels"] * 4
     position = np.load(tmp_path / "t" / "Hybrid.position.npy")
     assert int((position[..., 3] > 0).sum()) == trace["pixels"]

@@ -17,8 +17,9 @@ def make() -> nau_py.Plan:
 
 def test_json_lists_passes_and_edges() -> None:
     data = json.loads(export(make(), "json"))
-    assert [p["name"] for p in data["passes"]] == ["raster", "trace", "combine"]
+    assert [p["name"] for p in data["passes"]] == ["shadow", "raster", "trace", "combine"]
     assert {(e["from"], e["to"], e["resource"]) for e in data["edges"]} == {
+        ("shadow", "raster", "texture Hybrid::sunDepth"),
         ("raster", "trace", "texture Hybrid::position"),
         ("raster", "combine", "texture Hybrid::color"),
         ("raster", "combine", "texture Hybrid::position"),
@@ -35,4 +36,4 @@ def test_svg_is_well_formed_and_shows_every_pass() -> None:
 
 def test_dot_and_mermaid_quote_names() -> None:
     assert '"Hybrid::position"' in export(make(), "dot")
-    assert 'p1["trace (raytrace)"]' in export(make(), "mermaid")
+    assert 'p2["trace (raytrace)"]' in export(make(), "mermaid")

@@ -234,6 +234,8 @@ def components(facts: Facts) -> Iterator[Diagnostic]:
             node.type
         )
         context = node.context
+        if not project.file.tag:
+            continue  # a library alone: the project that loads it defines cameras and lights
         if kind and context not in (None, "CURRENT") and context not in names.of(kind):
             known = names.of(kind)
             yield R017.at(
