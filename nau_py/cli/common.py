@@ -8,9 +8,11 @@ from pathlib import Path
 
 import typer
 
-from nau_py.diagnostic import Diagnostic
-from nau_py.errors import NauError
+from nau_py.diagnostic import Diagnostic, error
+from nau_py.errors import NauError, OutputError
+from nau_py.files import write_text
 from nau_py.lint.report import to_text
+from nau_py.model.location import NOWHERE
 
 FAILED = 1
 USAGE = 2
@@ -43,6 +45,16 @@ def existing(path: Path) -> Path:
     return path
 
 
-def run_app(app: typer.Typer) -> None:
-    """Run a typer application with its own exit status."""
-    app()
+def write_result(output: Path | None, text: str) -> None:
+    """Write a command's result to a file, whole or not at all, or to stdout.
+
+    Raises :class:`~nau_py.errors.OutputError`.
+    """
+    if output is None:
+        sys.stdout.write(text)
+        return
+    try:
+        write_text(output, text)
+    except OSError as problem:
+        message = f"output '{output}' cannot be written: {problem.strerror}"
+        raise OutputError(error("E002", NOWHERE, message)) from None

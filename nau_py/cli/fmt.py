@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from nau_py.cli.common import FAILED, existing, guarded, say
+from nau_py.cli.common import FAILED, existing, guarded, say, write_result
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
@@ -53,19 +53,7 @@ def fmt(
         raise typer.Exit(0 if same else FAILED)
 
     def work() -> int:
-        from nau_py.diagnostic import error
-        from nau_py.errors import OutputError
-        from nau_py.files import write_text
-        from nau_py.model.location import NOWHERE
-
-        if output is None:
-            sys.stdout.write(text)
-            return 0
-        try:
-            write_text(output, text)
-        except OSError as problem:
-            message = f"output '{output}' cannot be written: {problem.strerror}"
-            raise OutputError(error("E002", NOWHERE, message)) from None
+        write_result(output, text)
         return 0
 
     raise typer.Exit(guarded(work, loaded.sources, debug))

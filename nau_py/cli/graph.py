@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from nau_py.cli.common import existing, guarded, say
+from nau_py.cli.common import existing, guarded, say, write_result
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
@@ -45,20 +44,7 @@ def graph(
         raise typer.Exit(FAILED)
 
     def work() -> int:
-        from nau_py.diagnostic import error
-        from nau_py.errors import OutputError
-        from nau_py.files import write_text
-        from nau_py.model.location import NOWHERE
-
-        text = export(nau_py.plan(loaded, pipeline), format.value)
-        if output is None:
-            sys.stdout.write(text)
-            return 0
-        try:
-            write_text(output, text)
-        except OSError as problem:
-            message = f"output '{output}' cannot be written: {problem.strerror}"
-            raise OutputError(error("E002", NOWHERE, message)) from None
+        write_result(output, export(nau_py.plan(loaded, pipeline), format.value))
         return 0
 
     raise typer.Exit(guarded(work, loaded.sources, debug))

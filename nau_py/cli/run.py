@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from nau_py.cli.common import USAGE, existing, guarded, say
+from nau_py.cli.common import USAGE, existing, guarded, say, write_result
 from nau_py.diagnostic import Severity
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
@@ -129,19 +129,11 @@ def _render(
 
 def _finish(reports: list[dict[str, Any]], path: Path | None, quiet: bool, explain: bool) -> None:
     from nau_py.cli.table import print_table
-    from nau_py.diagnostic import error
-    from nau_py.errors import OutputError
-    from nau_py.files import write_text
-    from nau_py.model.location import NOWHERE
     from nau_py.run.report import joined
 
     whole = joined(reports)
     if path is not None:
-        try:
-            write_text(path, json.dumps(whole, indent=2) + "\n")
-        except OSError as problem:
-            message = f"report '{path}' cannot be written: {problem.strerror}"
-            raise OutputError(error("E002", NOWHERE, message)) from None
+        write_result(path, json.dumps(whole, indent=2) + "\n")
     if not quiet:
         print_table(whole, explain)
 

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from nau_py.graph.contract import Access
-from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
-from nau_py.passes.access import add_maps, add_process, add_target
-from nau_py.passes.drawing import begin, draw_context, note_pixels, process
+from nau_py.passes.default import DefaultClass
+from nau_py.passes.drawing import begin, draw_scenes
 from nau_py.passes.frame import FrameContext, PassRecord
 from nau_py.scene.camera import CameraState
 from nau_py.scene.lights import LightState
@@ -48,18 +46,10 @@ def light_camera(name: str, light: LightState, corners: F64) -> CameraState:
     return state
 
 
-class DepthmapClass:
+class DepthmapClass(DefaultClass):
     """Rasterises scenes from the first light of the pass."""
 
-    def access(self, project: Project, pass_: Pass) -> Access:
-        access = Access()
-        add_maps(access, project, pass_)
-        add_process(access, pass_)
-        add_target(access, project, pass_, clears=True)
-        return access
-
     def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
-        from nau_py.raster.draw import draw, draw_list
         from nau_py.raster.gl import GL
 
         eye = frame.world.camera(pass_.camera_name)
@@ -79,12 +69,5 @@ class DepthmapClass:
         frame.camera = camera
         target = begin(pass_, frame, uses_camera=True)
         GL.glEnable(GL.GL_DEPTH_CLAMP)
-        process(pass_.preProcess, frame)
-        projection = camera.projection_matrix(1.0)
-        context = draw_context(pass_, frame, target, projection, camera.view_matrix(), lights=True)
-        materials = frame.session.pass_materials(pass_)
-        draw(draw_list(frame.world.objects(pass_.scene_names), materials.__getitem__), context)
+        draw_scenes(pass_, frame, target, record)
         GL.glDisable(GL.GL_DEPTH_CLAMP)
-        frame.session.resources.barrier()
-        process(pass_.postProcess, frame)
-        note_pixels(record, frame)

@@ -104,6 +104,26 @@ def draw_context(
     )
 
 
+def camera_context(pass_: Pass, frame: FrameContext, target: Target) -> DrawContext:
+    """:func:`draw_context` with the matrices of the frame's current camera, and the lights."""
+    projection = frame.camera.projection_matrix(frame.rect.aspect)
+    view = frame.camera.view_matrix()
+    return draw_context(pass_, frame, target, projection, view, lights=True)
+
+
+def draw_scenes(pass_: Pass, frame: FrameContext, target: Target, record: PassRecord) -> None:
+    """Draw the scenes of a pass with the current camera, between its process items."""
+    from nau_py.raster.draw import draw, draw_list
+
+    process(pass_.preProcess, frame)
+    materials = frame.session.pass_materials(pass_)
+    objects = frame.world.objects(pass_.scene_names)
+    draw(draw_list(objects, materials.__getitem__), camera_context(pass_, frame, target))
+    frame.session.resources.barrier()
+    process(pass_.postProcess, frame)
+    note_pixels(record, frame)
+
+
 def identity() -> F64:
     return np.eye(4)
 

@@ -17,7 +17,7 @@ from nau_py.model.passes import Pass
 from nau_py.model.raytrace import Program, RaytracePass, RayVariable
 from nau_py.model.raytrace import RayMaterial as RayMaterialNode
 from nau_py.passes.access import add_process, add_target, texture
-from nau_py.passes.drawing import draw_context, pass_value, process, target_and_rect
+from nau_py.passes.drawing import camera_context, pass_value, process, target_and_rect
 from nau_py.passes.frame import FrameContext, PassRecord, Session
 from nau_py.scene.images import ImageError, load_image
 from nau_py.scene.material import RenderMaterial, TextureBinding
@@ -198,14 +198,7 @@ class _State:
         from nau_py.raytrace.tracer import Scene
 
         lights = [RayLight(light.name, light.values) for light in frame.lights(pass_)]
-        context = draw_context(
-            pass_,
-            frame,
-            target,
-            frame.camera.projection_matrix(frame.rect.aspect),
-            frame.camera.view_matrix(),
-            lights=True,
-        )
+        context = camera_context(pass_, frame, target)
         materials = []
         for name in self.geometry.materials:
             render = self._render_material(name)

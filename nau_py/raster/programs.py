@@ -130,9 +130,9 @@ def compile_program(ctx: Any, library: str, shader: Shader) -> Program:
     """Compile and link. Raises :class:`~nau_py.errors.ShaderError`."""
     label = f"shader '{shader.name}' of library '{library}'"
     sources = {s: src for s in STAGES if (src := read_stage(shader, s)) is not None}
-    unsupported = [s for s in ("ts", "ms") if s in sources]
+    unsupported = [s for s in ("ts", "ms", "tc", "te") if s in sources]
     if unsupported:
-        message = f"{label}: stage {unsupported[0]} needs NV_mesh_shader, which is not supported"
+        message = f"{label}: stage {unsupported[0]} is not supported by this version"
         raise ShaderError(error("G004", shader.where(unsupported[0]), message))
     try:
         if "cs" in sources:

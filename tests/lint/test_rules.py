@@ -403,6 +403,11 @@ def test_asset_findings(folder: Folder, assets: str, expected: str) -> None:
         ),
         (
             "<SIZE width=8 height=8 />",
+            "<SIZE width=8 height=8 /><SAMPLES value=4 />",
+            "P006 error `SAMPLES` render target 'rt': SAMPLES is 4; only 0 and 1 are supported",
+        ),
+        (
+            "<SIZE width=8 height=8 />",
             "<SIZE width=8 />",
             "V003 error `SIZE` <SIZE> is a UIVEC2 and lacks 'y or height'",
         ),

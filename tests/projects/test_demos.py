@@ -64,10 +64,9 @@ def test_no_seam_of_black_at_mask_borders(selective: nau_py.Frame) -> None:
     assert (selective.image[inside][:, :3].max(axis=1) > 0).all()
 
 
-def test_materials_behind_the_mask(selective: nau_py.Frame) -> None:
-    """The mask is exactly where the first triangle hit belongs to glass or a grille."""
-    project = nau_py.load(PROJECTS / "selective" / "project.xml")
-    world = World(project, SIZE)
+def materials_seen(name: str) -> NDArray[np.str_]:
+    """The material that the ray through each pixel centre hits first, or ``sky``."""
+    world = World(nau_py.load(PROJECTS / name / "project.xml"), SIZE)
     geometry = gather(world.objects(["Plaza"]))
     x, y = np.meshgrid(np.arange(SIZE[0]) + 0.5, np.arange(SIZE[1])[::-1] + 0.5)
     rays = camera_rays(world.camera("Eye"), world.viewport("Window"))
@@ -76,7 +75,12 @@ def test_materials_behind_the_mask(selective: nau_py.Frame) -> None:
     )
     names = np.array([*geometry.materials, "sky"])
     index = np.where(found.triangle >= 0, geometry.material[found.triangle], len(names) - 1)
-    chosen = np.isin(names[index], ["Vidro", "GradeVaranda", "GradePortao"]).reshape(x.shape)
+    return names[index].reshape(x.shape)
+
+
+def test_materials_behind_the_mask(selective: nau_py.Frame) -> None:
+    """The mask is exactly where the first triangle hit belongs to glass or a grille."""
+    chosen = np.isin(materials_seen("selective"), ["Vidro", "GradeVaranda", "GradePortao"])
     # back faces are culled by the rasteriser only, and edges may fall either way
     assert (chosen != mask(selective)).mean() < 0.005
 
@@ -124,17 +128,7 @@ def test_half_is_traced_below_the_line_only(half: nau_py.Frame) -> None:
 
 def test_half_reflects_below_the_line_only(half: nau_py.Frame) -> None:
     """Rasterised glass is one dark colour; traced glass shows the square."""
-    project = nau_py.load(PROJECTS / "half" / "project.xml")
-    world = World(project, SIZE)
-    geometry = gather(world.objects(["Plaza"]))
-    x, y = np.meshgrid(np.arange(SIZE[0]) + 0.5, np.arange(SIZE[1])[::-1] + 0.5)
-    rays = camera_rays(world.camera("Eye"), world.viewport("Window"))
-    found = Accelerator(geometry).intersect(
-        *rays(x.reshape(-1).astype(np.float32), y.reshape(-1).astype(np.float32))
-    )
-    names = np.array([*geometry.materials, "sky"])
-    index = np.where(found.triangle >= 0, geometry.material[found.triangle], len(names) - 1)
-    glass = (names[index] == "Vidro").reshape(x.shape)
+    glass = materials_seen("half") == "Vidro"
     for step in (-1, 1):
         glass &= np.roll(glass, step, 0) & np.roll(glass, step, 1)
     upper, lower = glass.copy(), glass.copy()

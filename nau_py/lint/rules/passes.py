@@ -8,7 +8,7 @@ from nau_py.diagnostic import Diagnostic, listing, nearest
 from nau_py.lint.rule import ERROR, WARNING, Facts, check, rule
 from nau_py.model.linked import Project
 from nau_py.model.pass_classes import PASS_CLASSES, PLUGIN_CLASSES, ComputePass
-from nau_py.model.target import RenderTarget
+from nau_py.model.target import CubeMapAttachment, RenderTarget
 
 P001 = rule(
     "P001",
@@ -49,6 +49,16 @@ P005 = rule(
     "OpenGL promises only eight colour targets.",
     "nine <color/> elements",
     "up to eight",
+)
+
+
+P006 = rule(
+    "P006",
+    ERROR,
+    "Kind of render target not supported",
+    "This version has neither multisampled targets nor cube maps to draw into.",
+    "<SAMPLES value='4'/>",
+    "<SAMPLES value='0'/>",
 )
 
 
@@ -129,6 +139,20 @@ def targets(facts: Facts) -> Iterator[Diagnostic]:
                     f"render target '{target.name}': SIZE is {width} x {height}; "
                     "both must be above 0",
                 )
+            samples = int(facts.project.value(target, "RENDER_TARGET", "SAMPLES")[0])
+            if samples > 1:
+                yield P006.at(
+                    target.settings["SAMPLES"].location,
+                    f"render target '{target.name}': SAMPLES is {samples}; only 0 and 1 are "
+                    "supported",
+                )
+            for attachment in target.colors:
+                if isinstance(attachment, CubeMapAttachment):
+                    yield P006.at(
+                        attachment.location,
+                        f"render target '{target.name}': cube map '{attachment.name}' is not "
+                        "supported as a target",
+                    )
             if len(target.colors) > 8:
                 yield P005.at(
                     target.location,

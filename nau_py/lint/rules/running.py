@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nau_py.diagnostic import Diagnostic
-from nau_py.lint.rule import ERROR, WARNING, Facts, check, rule
+from nau_py.lint.rule import ERROR, NOTE, WARNING, Facts, check, rule
 from nau_py.lint.walk import nodes
 from nau_py.model.events import Interpolator, Route, Sensor
 from nau_py.model.passes import SceneReferences, Script
@@ -34,6 +34,22 @@ L004 = rule(
     "<scenes drawIndirectBuffer='L::b'>",
     "<scenes>",
 )
+L005 = rule(
+    "L005",
+    WARNING,
+    "Adjacency is ignored",
+    "This version draws plain triangles; geometry shaders see no neighbours.",
+    "<scene name='S' param='USE_ADJACENCY'>",
+    "<scene name='S'>",
+)
+L006 = rule(
+    "L006",
+    NOTE,
+    "One pipeline a run",
+    "Nau's mode RUN_ALL draws the pipelines in turn; nau-run draws the one that it is given.",
+    "<pipelines mode='RUN_ALL'>",
+    "nau-run project.xml --pipeline NAME",
+)
 L002 = rule(
     "L002",
     WARNING,
@@ -60,7 +76,12 @@ for id_, severity, title, why in (
     ("G001", ERROR, "GLSL error", "The driver rejects a shader; the place is in the shader file."),
     ("G002", ERROR, "Shader file unreadable", "A shader file could not be read."),
     ("G003", ERROR, "Shader does not link", "The stages of a program do not fit together."),
-    ("G004", ERROR, "Stage not supported", "Mesh and task shaders need NV_mesh_shader."),
+    (
+        "G004",
+        ERROR,
+        "Stage not supported",
+        "Mesh, task and tessellation stages do not run.",
+    ),
     ("M001", ERROR, "Model unreadable", "A model file could not be read; what is wrong is said."),
     ("M002", ERROR, "Geometry not supported", "Terrain and buffers are not supported yet."),
     ("M003", WARNING, "Vertices not finite", "Faces with such vertices are left out."),
@@ -114,6 +135,24 @@ def indirect(facts: Facts) -> Iterator[Diagnostic]:
         if isinstance(node, SceneReferences) and node.drawIndirectBuffer:
             where = node.where("drawIndirectBuffer")
             yield L004.at(where, f"draw commands '{node.drawIndirectBuffer}' are not used")
+
+
+@check
+def geometry_flags(facts: Facts) -> Iterator[Diagnostic]:
+    """Adjacency, which is not built."""
+    for scene in facts.project.assets.scenes:
+        if scene.has_flag("USE_ADJACENCY"):
+            yield L005.at(scene.where("param"), f"scene '{scene.name}': USE_ADJACENCY is ignored")
+
+
+@check
+def every_pipeline(facts: Facts) -> Iterator[Diagnostic]:
+    """Running all pipelines in turn, which one run does not do."""
+    pipelines = facts.project.file.pipelines
+    if pipelines is not None and pipelines.mode == "RUN_ALL":
+        yield L006.at(
+            pipelines.where("mode"), "mode RUN_ALL: a run draws one pipeline; name it by --pipeline"
+        )
 
 
 @check
