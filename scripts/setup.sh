@@ -40,7 +40,7 @@ make_environment() { # make_environment EXTRAS
 }
 
 has_opengl() {
-    .venv/bin/python -c 'from nau_py.raster.device import device; device()' 2>/dev/null
+    opengl_problem=$(.venv/bin/python -c 'from nau_py.raster.device import device; device()' 2>&1)
 }
 
 make_opengl() {
@@ -49,6 +49,7 @@ make_opengl() {
         apt_install libegl1 libgl1 libgl1-mesa-dri
         has_opengl && return 0
     fi
+    say "$opengl_problem"
     say "no OpenGL 4.5 driver was found. Mesa's draws without a GPU; as root:"
     say "    apt-get install libegl1 libgl1 libgl1-mesa-dri"
     return 1

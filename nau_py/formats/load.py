@@ -24,7 +24,6 @@ from nau_py.paths import resolve
 
 BUILTIN_LIBRARY = Path(__file__).parent / "builtin" / "system.mlib"
 YAML_SUFFIXES = (".yaml", ".yml")
-LIBRARY_ROOTS = ("materialLib", "materiallib")
 _DEFAULT_KEYS = ("value", "x", "y", "z", "w", "r", "g", "b", "a")
 
 

@@ -1,10 +1,7 @@
-"""Models to files: clean XML or YAML, written whole or not at all."""
+"""Models to text: clean XML or YAML."""
 
 from __future__ import annotations
 
-from pathlib import Path
-
-from nau_py.files import write_text
 from nau_py.formats.bind import unbind
 from nau_py.formats.xml import format_xml
 from nau_py.formats.yaml import format_yaml, to_yaml
@@ -20,8 +17,3 @@ def format_node(node: Node, registry: Registry, style: str) -> str:
     if style == "yaml":
         return format_yaml(to_yaml(element, type(node), registry))
     return format_xml(element)
-
-
-def write_node(node: Node, registry: Registry, path: Path, style: str) -> None:
-    """Write a project file or library. Raises :class:`OSError` where ``path`` is not writable."""
-    write_text(path, format_node(node, registry, style))

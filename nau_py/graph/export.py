@@ -8,8 +8,6 @@ from xml.sax.saxutils import escape
 from nau_py.graph.plan import Plan
 from nau_py.graph.resource import WINDOW, Resource
 
-FORMATS = ("svg", "dot", "mermaid", "json")
-
 
 def _resources(plan: Plan) -> list[Resource]:
     found: dict[Resource, None] = {}
@@ -142,5 +140,5 @@ def to_svg(plan: Plan) -> str:
 
 
 def export(plan: Plan, style: str) -> str:
-    """Text in one of :data:`FORMATS`."""
+    """Text in ``style``: ``json``, ``dot``, ``mermaid`` or ``svg``."""
     return {"json": to_json, "dot": to_dot, "mermaid": to_mermaid, "svg": to_svg}[style](plan)

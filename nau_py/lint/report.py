@@ -12,7 +12,6 @@ from nau_py.lint.rule import RULES
 from nau_py.lint.rules import families
 from nau_py.model.location import Location
 
-FORMATS = ("text", "json", "sarif")
 _TAB = 4
 
 

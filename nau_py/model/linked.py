@@ -102,10 +102,6 @@ class Project:
     def _in(self, library: str) -> Iterator[MaterialLibrary]:
         return (lib for lib in self.libraries if lib.name == library)
 
-    @property
-    def library_names(self) -> list[str]:
-        return list(dict.fromkeys(lib.name for lib in self.libraries if lib.name))
-
     def material(self, library: str, name: str) -> tuple[MaterialLibrary, Material] | None:
         return next(
             ((lib, m) for lib in self._in(library) for m in lib.materials if m.name == name), None

@@ -52,10 +52,6 @@ class DataType(StrEnum):
         return self.value.startswith(("INT", "IVEC", "UINT", "UIVEC"))
 
     @property
-    def is_unsigned(self) -> bool:
-        return self.value.startswith("UI")
-
-    @property
     def is_boolean(self) -> bool:
         return self.value.startswith(("BOOL", "BVEC"))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import TYPE_CHECKING
 
 from nau_py.graph.contract import Access
 from nau_py.model.library import DEFAULT_LIBRARY
@@ -10,8 +10,9 @@ from nau_py.model.linked import Project
 from nau_py.model.pass_classes import ComputePass
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_material, add_process, buffer
-from nau_py.passes.drawing import draw_context, identity, pass_value, process
-from nau_py.passes.frame import FrameContext, PassRecord
+
+if TYPE_CHECKING:
+    from nau_py.passes.frame import FrameContext, PassRecord
 
 
 class ComputeClass:
@@ -30,6 +31,8 @@ class ComputeClass:
 
     def groups(self, pass_: ComputePass, frame: FrameContext) -> tuple[int, int, int]:
         """Work groups along x, y, z; DIM_* child tags override the material's numbers."""
+        from nau_py.passes.drawing import pass_value
+
         counts = []
         for axis in "XYZ":
             if f"DIM_{axis}" in pass_.settings:
@@ -40,13 +43,14 @@ class ComputeClass:
             if storage is not None:
                 offset = getattr(pass_.material, f"offset{axis}") or 0
                 raw = storage.read(4, offset=offset)
-                counts.append(int(np.frombuffer(raw, np.uint32)[0]))
+                counts.append(int.from_bytes(raw, "little"))
             else:
                 written = getattr(pass_.material, f"dim{axis}")
                 counts.append(int(frame.project.number(written, 1.0)))
         return counts[0], counts[1], counts[2]
 
     def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
+        from nau_py.passes.drawing import draw_context, identity, process
         from nau_py.raster.draw import bind_material, set_uniforms, unbind_material
 
         if not isinstance(pass_, ComputePass) or pass_.material is None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_maps, add_process, add_target
-from nau_py.passes.drawing import begin, draw_scenes
-from nau_py.passes.frame import FrameContext, PassRecord
+
+if TYPE_CHECKING:
+    from nau_py.passes.frame import FrameContext, PassRecord
 
 
 class DefaultClass:
@@ -21,6 +24,8 @@ class DefaultClass:
         return access
 
     def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
+        from nau_py.passes.drawing import begin, draw_scenes
+
         frame.camera = frame.world.camera(pass_.camera_name)
         target = begin(pass_, frame, uses_camera=True)
         draw_scenes(pass_, frame, target, record)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import lru_cache
-
-import numpy as np
+from typing import TYPE_CHECKING
 
 from nau_py.graph.contract import Access
 from nau_py.model.library import DEFAULT_LIBRARY, qualified
@@ -13,26 +11,11 @@ from nau_py.model.linked import Project
 from nau_py.model.pass_classes import QuadPass
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_maps, add_material, add_process, add_target, texture
-from nau_py.passes.drawing import begin, draw_context, identity, note_pixels, process
-from nau_py.passes.frame import FrameContext, PassRecord
-from nau_py.scene.material import RenderMaterial, TextureBinding, default_material
-from nau_py.scene.mesh import Group, Mesh, pad4
+from nau_py.scene.model_material import QUAD_MATERIAL
 
-QUAD_MATERIAL = "__Quad"
-
-
-@lru_cache(maxsize=1)
-def quad_mesh() -> Mesh:
-    """The clip-space quad at z = -1, texture coordinates 0..1 from the lower left, normals zero."""
-    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)
-    position = np.column_stack([corners * 2 - 1, np.full(4, -1.0)])
-    attributes = {
-        "position": pad4(position, 1.0),
-        "normal": np.zeros((4, 4), np.float32),
-        "texCoord0": pad4(corners, 0.0),
-    }
-    indices = np.array([[0, 1, 3], [1, 2, 3]], np.uint32)
-    return Mesh(attributes, [Group(QUAD_MATERIAL, indices)])
+if TYPE_CHECKING:
+    from nau_py.passes.frame import FrameContext, PassRecord
+    from nau_py.scene.material import RenderMaterial
 
 
 class QuadClass:
@@ -53,6 +36,8 @@ class QuadClass:
 
     def material(self, pass_: Pass, frame: FrameContext) -> RenderMaterial:
         """The material of the quad: ``material``, else ``texture``, else a mapped ``__Quad``."""
+        from nau_py.scene.material import TextureBinding, default_material
+
         table = frame.world.materials
         if isinstance(pass_, QuadPass) and pass_.material is not None:
             library = pass_.material.fromLibrary or DEFAULT_LIBRARY
@@ -69,12 +54,14 @@ class QuadClass:
         return frame.session.pass_materials(pass_)[QUAD_MATERIAL] or plain
 
     def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
+        from nau_py.passes.drawing import begin, draw_context, identity, note_pixels, process
         from nau_py.raster.draw import DrawItem, draw
+        from nau_py.scene.primitives import quad
 
         target = begin(pass_, frame, uses_camera=False)
         process(pass_.preProcess, frame)
         context = draw_context(pass_, frame, target, identity(), identity(), lights=False)
-        draw([DrawItem(quad_mesh(), 0, self.material(pass_, frame), identity())], context)
+        draw([DrawItem(quad(), 0, self.material(pass_, frame), identity())], context)
         frame.session.resources.barrier()
         process(pass_.postProcess, frame)
         note_pixels(record, frame)

@@ -65,11 +65,6 @@ _MATRIX_TYPES = {
 }
 
 
-def get_error() -> int:
-    """The oldest OpenGL error since the last call; 0 for none."""
-    return int(GL.glGetError())
-
-
 def components_of(gl_type: int) -> int:
     """Scalars of one element of a uniform of ``gl_type``; 1 for samplers and images."""
     if gl_type in _MATRIX_TYPES:

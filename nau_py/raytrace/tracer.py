@@ -14,7 +14,7 @@ from nau_py.raytrace.geometry import RayGeometry
 from nau_py.raytrace.hits import Hits, RayLight, RayMaterial, Rays
 from nau_py.raytrace.programs import BoundProgram
 from nau_py.raytrace.spawn import spawn
-from nau_py.raytrace.vectors import F32, Mask
+from nau_py.raytrace.vectors import F32
 
 MAX_LAYERS = 256
 """Ignored hits that one ray may pass through; reaching it is reported, never silent."""
@@ -205,6 +205,3 @@ def _take(rays: Rays, chosen: NDArray[np.int64]) -> Rays:
         rays.depth,
         rays.ray_type,
     )
-
-
-__all__ = ["Mask", "RayCounts", "Scene", "Tracer"]

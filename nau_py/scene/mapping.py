@@ -81,10 +81,6 @@ class PassMaterials:
         found = self._mapped.get(name) or self._everything
         return found or self._table.get(DEFAULT_LIBRARY, name)
 
-    def all(self) -> list[RenderMaterial]:
-        """The materials that maps have made, for look-ups by (library, name)."""
-        return list(self._mapped.values())
-
     def _inject(self, name: str, injection: InjectionMap) -> None:
         clone = self._mapped.get(name)
         if clone is None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+QUAD_MATERIAL = "__Quad"
+"""The material of a quad pass that names none."""
 OBJ_MATERIAL = "DefaultOBJMaterial"
 """The material of faces in an OBJ file without a material library."""
 PRIMITIVE_MATERIAL = "__Light Grey"
 """The material of built-in primitives that name none."""
-
-Colour = tuple[float, float, float, float]
 
 DEFAULT_COLOURS: dict[str, tuple[float, ...]] = {
     "AMBIENT": (0.2, 0.2, 0.2, 1.0),

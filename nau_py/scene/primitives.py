@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from nau_py.scene.mesh import F32, F64, Group, Mesh, pad4
+from nau_py.scene.model_material import QUAD_MATERIAL
 
 _AXIS_MATERIALS = ("__Emission Red", "__Emission Green", "__Emission Blue")
 
@@ -104,3 +107,17 @@ def axis(material: str | None) -> Mesh:
         Group(name, np.array([[2 * k, 2 * k + 1]], np.uint32)) for k, name in enumerate(names)
     ]
     return Mesh({"position": pad4(ends, 1.0)}, groups, "LINES")
+
+
+@lru_cache(maxsize=1)
+def quad() -> Mesh:
+    """The clip-space quad of a quad pass: z = -1, uv 0..1 from the lower left, normals zero."""
+    corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)
+    position = np.column_stack([corners * 2 - 1, np.full(4, -1.0)])
+    attributes = {
+        "position": pad4(position, 1.0),
+        "normal": np.zeros((4, 4), np.float32),
+        "texCoord0": pad4(corners, 0.0),
+    }
+    indices = np.array([[0, 1, 3], [1, 2, 3]], np.uint32)
+    return Mesh(attributes, [Group(QUAD_MATERIAL, indices)])

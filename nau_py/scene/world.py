@@ -58,14 +58,8 @@ class World:
         """Add a camera that a pass makes (a depth map's light camera)."""
         self._cameras[camera.name] = camera
 
-    def has_camera(self, name: str) -> bool:
-        return name in self._cameras
-
     def light(self, name: str) -> LightState:
         return self._lights.get(name, self._lights[DEFAULT_NAME])
-
-    def has_light(self, name: str) -> bool:
-        return name in self._lights
 
     def viewport(self, name: str | None) -> Rect:
         """The rectangle of a viewport in the window; the whole window for None."""

@@ -1,0 +1,249 @@
+"""What a raytrace pass keeps from frame to frame, and what it reads and writes in one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.model.library import DEFAULT_LIBRARY
+from nau_py.model.linked import Project
+from nau_py.model.maps import matches
+from nau_py.model.raytrace import Program, RaytracePass, RayVariable
+from nau_py.model.raytrace import RayMaterial as RayMaterialNode
+from nau_py.model.texture import Texture
+from nau_py.passes.drawing import camera_context, pass_value
+from nau_py.passes.frame import FrameContext, Session
+from nau_py.paths import resolve as resolve_path
+from nau_py.raster.semantics import resolve
+from nau_py.raytrace.accel import Accelerator
+from nau_py.raytrace.geometry import RayGeometry, gather
+from nau_py.raytrace.hits import RayLight, RayMaterial
+from nau_py.raytrace.programs import ProgramLoader, TrustRule
+from nau_py.raytrace.texture import RayTexture
+from nau_py.raytrace.tracer import ProgramTable, Scene
+from nau_py.scene.images import ImageError, load_image
+from nau_py.scene.material import RenderMaterial, TextureBinding
+
+if TYPE_CHECKING:
+    from nau_py.raster.targets import Target
+
+COMPONENTS = "xyzw"
+
+
+def mask_component(pass_: RaytracePass, channels: int) -> int:
+    """The channel of the mask input: the named one, else the last."""
+    named = pass_.mask.mask if pass_.mask else None
+    return min(COMPONENTS.index(named) if named in tuple(COMPONENTS) else 3, channels - 1)
+
+
+class TracingState:
+    """What a raytrace pass keeps from frame to frame: geometry, programs, textures."""
+
+    def __init__(self, pass_: RaytracePass, session: Session) -> None:
+        self.session = session
+        self.geometry: RayGeometry = gather(session.world.objects(pass_.scene_names))
+        self.accelerator: Accelerator = Accelerator(self.geometry)
+        self._textures: dict[TextureBinding, Any] = {}
+        loader = _loader(session)
+        entry = pass_.rtEntryPoint
+        assert entry is not None
+        label = f"project '{session.project.name}', pass '{pass_.name}'"
+        self.label = label
+        generate = entry.rayGen or Program(file="builtin", proc="pinhole")
+        self.generate = loader.load(generate, f"{label}, ray generation program '{generate.proc}'")
+        self.exception = None
+        if entry.exception is not None:
+            proc = entry.exception.proc
+            self.exception = loader.load(entry.exception, f"{label}, exception program '{proc}'")
+        self.programs = self._bind(pass_, loader)
+
+    def _render_material(self, name: str) -> RenderMaterial | None:
+        return self.session.world.materials.get(DEFAULT_LIBRARY, name)
+
+    def _entry(self, pass_: RaytracePass, name: str) -> RayMaterialNode | None:
+        """The programs of a material: its exact entry, a prefix's, else the default's (7.1)."""
+        mapped = self.session.pass_materials(pass_)[name]
+        names = {name}
+        if mapped is not None:
+            names |= {f"{mapped.library}:{mapped.name}", f"{mapped.library}::{mapped.name}"}
+        for node in pass_.rtMaterialMap:
+            if node.to in names:
+                return node
+        prefixed = sorted(
+            (n for n in pass_.rtMaterialMap if n.to and n.to.endswith("*")),
+            key=lambda n: n.to or "",
+        )
+        for node in prefixed:
+            if matches(node.to or "", name):
+                return node
+        return pass_.rtDefaultMaterial
+
+    def _bind(self, pass_: RaytracePass, loader: ProgramLoader) -> ProgramTable:
+        table: ProgramTable = {}
+        count = len(self.geometry.materials)
+        entries = [self._entry(pass_, name) for name in self.geometry.materials]
+        for ray_type in pass_.ray_types:
+            for kind in (CLOSEST_HIT, ANY_HIT):
+                table[ray_type, kind] = [None] * count
+            for index, (name, entry) in enumerate(zip(self.geometry.materials, entries)):
+                for kind in (CLOSEST_HIT, ANY_HIT):
+                    node = _program(entry, ray_type, kind)
+                    if node is not None:
+                        label = (
+                            f"{self.label}, material '{name}', {kind} program '{node.proc}' of "
+                            f"ray type '{ray_type}'"
+                        )
+                        table[ray_type, kind][index] = loader.load(node, label)
+            miss = _program(pass_.rtDefaultMaterial, ray_type, MISS)
+            if miss is not None:
+                label = f"{self.label}, MISS program '{miss.proc}' of ray type '{ray_type}'"
+                table[ray_type, MISS] = [loader.load(miss, label)]
+        return table
+
+    def _texture(self, binding: TextureBinding) -> Any:
+        if binding not in self._textures:
+            path = binding.path or _library_image(self.session.project, binding.texture)
+            made = None
+            if path is not None:
+                settings = {name: str(parts[0]) for name, parts in binding.sampler if parts}
+                border = dict(binding.sampler).get("BORDER_COLOR", (0.0,) * 4)
+                r, g, b, a = (*(float(v) for v in border), 0.0)[:4]
+                try:
+                    made = RayTexture(
+                        load_image(path),
+                        settings.get("WRAP_S", "REPEAT"),
+                        settings.get("WRAP_T", "REPEAT"),
+                        settings.get("MAG_FILTER") == "NEAREST",
+                        (r, g, b, a),
+                    )
+                except ImageError:
+                    made = None
+            self._textures[binding] = made
+        return self._textures[binding]
+
+    def scene(
+        self,
+        pass_: RaytracePass,
+        frame: FrameContext,
+        target: Target,
+        inputs: dict[str, NDArray[Any]],
+    ) -> Scene:
+        """The scene of this frame: materials, lights and parameters resolved."""
+        lights = [RayLight(light.name, light.values) for light in frame.lights(pass_)]
+        context = camera_context(pass_, frame, target)
+        materials = []
+        for name in self.geometry.materials:
+            render = self._render_material(name)
+            context.material = render
+            materials.append(self._material(pass_, name, render, context))
+        context.material = None
+        return Scene(
+            self.geometry,
+            self.accelerator,
+            materials,
+            self.programs,
+            lights,
+            _variables(pass_.rtGlobalParams, context),
+            inputs,
+            pass_.ray_types,
+            int(pass_value(frame.project, pass_, "MAX_DEPTH")),
+            frame.session.options.seed,
+            np.array(frame.rect.clear if target.name == "window" else target.clear, np.float32),
+        )
+
+    def _material(
+        self, pass_: RaytracePass, name: str, render: RenderMaterial | None, context: Any
+    ) -> Any:
+        if render is None:
+            return RayMaterial(name, {}, {})
+        textures = {
+            unit: made
+            for unit, binding in render.textures.items()
+            if (made := self._texture(binding)) is not None
+        }
+        variables = _variables(pass_.rtMaterialParams, context)
+        return RayMaterial(name, render.colours, textures, variables)
+
+
+def tracing_state(pass_: RaytracePass, session: Session) -> TracingState:
+    key = pass_.name or ""
+    if key not in session.tracers:
+        session.tracers[key] = TracingState(pass_, session)
+    found = session.tracers[key]
+    assert isinstance(found, TracingState)
+    return found
+
+
+def _program(node: RayMaterialNode | None, ray_type: str, kind: str) -> Program | None:
+    for group in node.rayTypes if node else []:
+        if group.name == ray_type:
+            return next((p for p in group.programs if p.type == kind), None)
+    return None
+
+
+def _loader(session: Session) -> ProgramLoader:
+    project, options = session.project, session.options
+    package = Path(__file__).resolve().parent.parent
+    folders = [project.folder, package]
+    folders += [Path(lib.file).parent for lib in project.libraries if lib.file]
+    folders += [Path(folder) for folder in options.allow_programs]
+    return ProgramLoader(project.folder, TrustRule(tuple(folders), options.no_programs))
+
+
+def _library_image(project: Project, name: str) -> Path | None:
+    """The image file of a library texture; None for one without a file."""
+    node = project.names("texture").get(name)
+    if isinstance(node, Texture) and node.filename:
+        return resolve_path(Path(node.location.file).parent, node.filename).best
+    return None
+
+
+def _variables(nodes: list[RayVariable], context: Any) -> dict[str, NDArray[Any]]:
+    values: dict[str, NDArray[Any]] = {}
+    for node in nodes:
+        if node.name and node.type and node.component:
+            value = resolve(
+                context, node.type, node.context or "CURRENT", node.component, node.id or 0
+            )
+            if value is not None:
+                values[node.name] = value
+    return values
+
+
+def read_inputs(pass_: RaytracePass, frame: FrameContext) -> dict[str, NDArray[Any]]:
+    """The input textures by variable name, (height, width, channels), row 0 at the bottom."""
+    found: dict[str, NDArray[Any]] = {}
+    for source in pass_.rtInput:
+        texture_ = frame.session.resources.texture(source.texture or "")
+        if source.var and texture_ is not None:
+            values = texture_.read()
+            if values.dtype == np.uint8:
+                values = values.astype(np.float32) / np.float32(255)
+            found[source.var] = values
+    return found
+
+
+def read_mask(pass_: RaytracePass, inputs: dict[str, NDArray[Any]]) -> NDArray[Any] | None:
+    values = inputs.get(pass_.mask.var or "") if pass_.mask else None
+    if values is None:
+        return None
+    return values[:, :, mask_component(pass_, values.shape[2])]
+
+
+def store_colours(target: Target, pixels: NDArray[np.int64], colours: NDArray[np.float32]) -> None:
+    """Scatter colours into the first colour texture; the other pixels get the clear value."""
+    texture_ = target.textures[target.colors[0].name]
+    count = target.width * target.height
+    image = np.tile(np.array(target.clear, np.float32), (count, 1))
+    image[pixels] = colours
+    channels = texture_.format.channels
+    shaped = image.reshape(target.height, target.width, 4)[:, :, :channels]
+    dtype = texture_.format.dtype
+    if np.issubdtype(dtype, np.integer) and not texture_.format.integer:
+        scale = np.float32(np.iinfo(np.dtype(dtype)).max)
+        shaped = np.rint(np.clip(shaped, 0, 1) * scale)
+    texture_.write(shaped)
