@@ -22,18 +22,6 @@ def _version(package: str) -> str:
         return "missing"
 
 
-def _embree() -> str:
-    import re
-    from pathlib import Path
-
-    import embreex
-
-    folder = Path(embreex.__file__).parent
-    names = [p.name for p in folder.parent.glob("embreex.libs/libembree*")]
-    found = [m[1] for n in names if (m := re.search(r"\.so\.([\d.]+)|embree(\d)", n)) and m[1]]
-    return f"Embree {found[0]}" if found else "Embree 4"
-
-
 def examine() -> int:
     """Print the findings; 0 where projects can run, 1 where something needed is missing."""
     status = 0
@@ -48,7 +36,9 @@ def examine() -> int:
         print(f"OpenGL      missing: {problem.diagnostics[0].message}")
         status = 1
     try:
-        print(f"Embree      {_embree()}, embreex {_version('embreex')}")
+        from nau_py.raytrace.accel import embree_version
+
+        print(f"Embree      {embree_version()}, embreex {_version('embreex')}")
     except ImportError as problem:
         print(f"Embree      missing: {problem}; pip install embreex")
         status = 1

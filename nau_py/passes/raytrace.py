@@ -34,7 +34,7 @@ class RaytraceClass:
         from nau_py.passes.drawing import pass_value, process, target_and_rect
         from nau_py.passes.tracing import read_inputs, read_mask, store_colours, tracing_state
         from nau_py.raytrace.camera import camera_rays
-        from nau_py.raytrace.launch import LaunchSettings, run_launch, select
+        from nau_py.raytrace.launch import LaunchSettings, Work, run_launch, select
 
         if not isinstance(pass_, RaytracePass) or pass_.rtEntryPoint is None:
             return
@@ -51,16 +51,16 @@ class RaytraceClass:
         options = frame.session.options
         samples = options.samples or int(pass_value(frame.project, pass_, "RAYS_PER_PIXEL"))
         name = pass_.name or ""
-        result = run_launch(
+        work = Work(
             scene,
             state.generate,
             state.exception,
-            pixels,
             width,
             camera_rays(frame.camera, rect),
             LaunchSettings(samples, options.threads, options.tile),
-            lambda done, total: frame.session.progress(name, done, total),
         )
+        progress = frame.session.progress
+        result = run_launch(work, pixels, lambda done, total: progress(name, done, total))
         store_colours(target, pixels, result.colours)
         process(pass_.postProcess, frame)
         record.pixels = len(pixels)

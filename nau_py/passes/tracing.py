@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from nau_py.diagnostic import warning
 from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
@@ -120,8 +121,10 @@ class TracingState:
                         settings.get("MAG_FILTER") == "NEAREST",
                         (r, g, b, a),
                     )
-                except ImageError:
-                    made = None
+                except ImageError as problem:
+                    message = f"texture '{binding.texture}': {problem}; rays see it as white"
+                    where = self.session.project.file.location
+                    self.session.resources.diagnostics.append(warning("F004", where, message))
             self._textures[binding] = made
         return self._textures[binding]
 

@@ -6,9 +6,12 @@ its broken ``output``, and an empty scene that answers with misses.
 
 from __future__ import annotations
 
+import ctypes
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
+import embreex
 import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
@@ -18,6 +21,23 @@ from nau_py.raytrace.geometry import RayGeometry
 from nau_py.raytrace.vectors import F32, Mask
 
 NO_HIT = -1
+_VERSION_PROPERTY = 0  # RTC_DEVICE_PROPERTY_VERSION of rtcore_device.h
+
+
+def embree_version() -> str:
+    """The version of the Embree library inside embreex's wheel; ``4`` where it does not say."""
+    folder = Path(embreex.__file__).parent.parent / "embreex.libs"
+    for file in sorted(folder.glob("libembree*")):
+        library = ctypes.CDLL(str(file))
+        library.rtcNewDevice.restype = ctypes.c_void_p
+        library.rtcGetDeviceProperty.restype = ctypes.c_ssize_t
+        library.rtcGetDeviceProperty.argtypes = [ctypes.c_void_p, ctypes.c_int]
+        library.rtcReleaseDevice.argtypes = [ctypes.c_void_p]
+        device = library.rtcNewDevice(None)
+        number = int(library.rtcGetDeviceProperty(device, _VERSION_PROPERTY))
+        library.rtcReleaseDevice(device)
+        return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
+    return "4"
 
 
 @dataclass(slots=True)

@@ -76,59 +76,65 @@ def _average(samples: F32, valid: NDArray[np.bool_]) -> tuple[F32, float]:
     return mean.astype(np.float32), float(many.sum())
 
 
-def run_launch(
-    scene: Scene,
-    generate: BoundProgram,
-    exception: BoundProgram | None,
-    pixels: NDArray[np.int64],
-    width: int,
-    rays: CameraRays,
-    settings: LaunchSettings,
-    progress: Callable[[int, int], None],
-) -> LaunchResult:
-    """Run ray generation for every sample of ``pixels``.
+@dataclass(frozen=True, slots=True)
+class Work:
+    """What every tile of a launch has in common."""
 
-    A sample that is not finite is replaced by what the exception program says, or dropped, and
-    counted. The result is the same to the bit for any tile size and number of threads.
-    """
-    samples = settings.samples
-    step = max(settings.tile // samples, 1)
-    starts = range(0, len(pixels), step)
+    scene: Scene
+    generate: BoundProgram
+    exception: BoundProgram | None
+    width: int
+    rays: CameraRays
+    settings: LaunchSettings
 
-    def work(start: int) -> _Tile:
-        chosen = pixels[start : start + step]
+    def tile(self, chosen: NDArray[np.int64]) -> _Tile:
+        """Trace all samples of the pixels ``chosen``."""
+        samples = self.settings.samples
         flat = np.repeat(chosen, samples)
-        tracer = Tracer(scene)
+        tracer = Tracer(self.scene)
         launch = Launch(
             tracer,
-            (flat % width).astype(np.int32),
-            (flat // width).astype(np.int32),
+            (flat % self.width).astype(np.int32),
+            (flat // self.width).astype(np.int32),
             flat.astype(np.uint32),
             np.tile(np.arange(samples, dtype=np.uint32), len(chosen)),
             samples,
-            rays,
+            self.rays,
         )
-        colours = generate.radiance(launch, len(flat))
-        valid = np.asarray(np.isfinite(colours).all(axis=1))
-        if not valid.all():
-            tracer.counts.nonfinite += int((~valid).sum())
-            if exception is not None:
-                colours[~valid] = exception.radiance(launch, len(flat))[~valid]
-                valid[:] = True
+        with np.errstate(all="ignore"):  # what is not finite is counted, not printed
+            colours = self.generate.radiance(launch, len(flat))
+            valid = np.asarray(np.isfinite(colours).all(axis=1))
+            if not valid.all():
+                tracer.counts.nonfinite += int((~valid).sum())
+                if self.exception is not None:
+                    colours[~valid] = self.exception.radiance(launch, len(flat))[~valid]
+                    valid[:] = True
         shape = (len(chosen), samples)
         mean, variance = _average(colours.reshape(*shape, 4), valid.reshape(shape))
         return _Tile(mean, tracer.counts, variance)
 
+
+def run_launch(
+    work: Work, pixels: NDArray[np.int64], progress: Callable[[int, int], None]
+) -> LaunchResult:
+    """Run ray generation for every sample of ``pixels``, in tiles over threads.
+
+    A sample that is not finite is replaced by what the exception program says, or dropped, and
+    counted. The colours are the same to the bit for any tile size and number of threads.
+    """
+    settings = work.settings
+    step = max(settings.tile // settings.samples, 1)
+    starts = range(0, len(pixels), step)
     result = LaunchResult(np.zeros((len(pixels), 4), np.float32))
-    variance, done = 0.0, 0
+    variance = 0.0
     threads = settings.threads or os.cpu_count() or 1
     with ThreadPoolExecutor(max_workers=threads) as pool:
-        for start, tile in zip(starts, pool.map(work, starts)):
+        tiles = pool.map(lambda start: work.tile(pixels[start : start + step]), starts)
+        for start, tile in zip(starts, tiles):
             result.colours[start : start + step] = tile.colours
             result.counts.merge(tile.counts)
             variance += tile.variance
-            done = min(start + step, len(pixels))
-            progress(done, len(pixels))
-    if samples > 1 and len(pixels):
+            progress(min(start + step, len(pixels)), len(pixels))
+    if settings.samples > 1 and len(pixels):
         result.est_error = float(np.sqrt(variance / (3 * len(pixels))))
     return result

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.diagnostic import Diagnostic, Severity, error
+from nau_py.diagnostic import Diagnostic, Severity, error, warning
 from nau_py.errors import NauError, ProjectError
 from nau_py.graph.plan import Plan, Step, make_plan
 from nau_py.graph.resource import WINDOW
@@ -175,7 +175,16 @@ class Renderer:
             )
             raise NauError(error("E001", step.pass_.location, message)) from bug
         record.ms = (perf_counter() - start) * 1000
+        if record.nonfinite:
+            message = f"pass '{step.name}': {record.nonfinite} samples or rays were not finite"
+            self._note([warning("T014", step.pass_.location, message)])
+        self._note(context.session.resources.diagnostics)
         return record
+
+    def _note(self, found: list[Diagnostic]) -> None:
+        """Add findings that are new; those of one pass and rule are kept once a run."""
+        known = {(d.rule, d.location, d.message) for d in self.diagnostics}
+        self.diagnostics += [d for d in found if (d.rule, d.location, d.message) not in known]
 
     def _capture(self) -> tuple[NDArray[Any], dict[str, NDArray[Any]]]:
         resources = self.session.resources

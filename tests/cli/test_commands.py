@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -225,8 +226,9 @@ def test_without_a_driver_the_message_says_what_to_install() -> None:
 def test_doctor() -> None:
     done = run("nau-run", "--doctor")
     assert done.returncode == 0
-    for word in ("OpenGL", "Embree", "threads", "[exr]"):
+    for word in ("OpenGL      4.", "threads", "[exr]"):
         assert word in done.stdout
+    assert re.search(r"Embree      4\.\d+\.\d+, embreex 4", done.stdout)
 
 
 def test_lint_statuses_and_formats(folder: Folder) -> None:

@@ -149,6 +149,7 @@ def test_samples_that_are_not_finite_are_counted_and_dropped(
     )
     frame = nau_py.Renderer(ray_project(USER.format(more=""), spp=4)).render()
     assert frame.report["nonfinite"] == 64 * 48
+    assert any("T014" in w and "3072 samples" in w for w in frame.report["warnings"])
     np.testing.assert_array_equal(frame.targets["L::out"], 1)
 
 
@@ -185,3 +186,73 @@ def test_prefixes_and_exact_names_bind_programs(folder: Folder, ray_project: Ray
     row = frame.targets["L::out"][24, :, 0]
     columns = [int(32 + (x + 0.5) * 24 / (3 * np.tan(np.radians(30)))) for x in (-2, -1, 0, 1)]
     assert [row[c] for c in columns] == [1, 2, 1, 0]
+
+
+def test_numpy_warnings_of_programs_are_counted_not_printed(
+    wall: Folder, ray_project: RayProject
+) -> None:
+    wall.write(
+        "prog.py",
+        "import numpy as np\n\n\ndef shade(hits):\n"
+        "    return np.ones((len(hits), 3)) / (hits.rays.sample % 2)[:, None]\n",
+    )
+    frame = nau_py.Renderer(ray_project(USER.format(more=""), spp=4)).render()
+    assert frame.report["nonfinite"] == 2 * 64 * 48
+    np.testing.assert_array_equal(frame.targets["L::out"], 1)
+
+
+def test_the_exception_program_paints_what_failed(wall: Folder, ray_project: RayProject) -> None:
+    wall.write(
+        "prog.py",
+        "import numpy as np\n\n\ndef shade(hits):\n"
+        "    return np.where(hits.position[:, :1] > 0, np.nan, 1.0) * np.ones(3)\n",
+    )
+    project = ray_project(USER.format(more=""))
+    text = (wall.path / "project.xml").read_text()
+    wall.write(
+        "project.xml",
+        text.replace(
+            "</rtEntryPoint>", '<exception file="builtin" proc="magenta" /></rtEntryPoint>'
+        ),
+    )
+    project = wall.load()
+    out = nau_py.Renderer(project).render().targets["L::out"]
+    assert out[20, 60].tolist() == [1, 0, 1, 1]
+    assert out[20, 3].tolist() == [1, 1, 1, 1]
+
+
+def test_inputs_are_read_by_pixel(wall: Folder, ray_project: RayProject) -> None:
+    """A texture input, (n, channels) at the pixels of the batch."""
+    wall.write("prog.py", "def camera(launch):\n    return launch.input('ramp')[:, :3] * 2\n")
+    wall.write(
+        "v.vert",
+        "#version 330\nin vec4 position;\nvoid main() { gl_Position = position; }\n",
+    )
+    wall.write(
+        "f.frag",
+        "#version 330\nout vec4 c;\nvoid main() { c = vec4(gl_FragCoord.xy, 0.5, 1.0); }\n",
+    )
+    wall.write(
+        "m.mlib",
+        '<materialLib name="M"><renderTargets><renderTarget name="r"><SIZE width="64" height="48"/>'
+        '<colors><color name="ramp" internalFormat="RGBA32F"/></colors></renderTarget>'
+        '</renderTargets><shaders><shader name="s" vs="v.vert" ps="f.frag"/></shaders><materials>'
+        '<material name="m"><shader name="s"/></material></materials></materialLib>',
+    )
+    ray_project()
+    text = (wall.path / "project.xml").read_text()
+    text = text.replace("</materialLibs>", '<materialLib filename="m.mlib"/></materialLibs>')
+    text = text.replace(
+        '<pass name="trace"',
+        '<pass name="draw" class="quad"><renderTarget name="r" fromLibrary="M"/>'
+        '<material name="m" fromLibrary="M"/></pass><pass name="trace"',
+    )
+    text = text.replace(
+        '<rtEntryPoint><rayGen file="builtin" proc="pinhole" />',
+        '<rtInput><buffer var="ramp" texture="M::ramp"/></rtInput>'
+        '<rtEntryPoint><rayGen file="prog.py" proc="camera" />',
+    )
+    wall.write("project.xml", text)
+    out = nau_py.Renderer(wall.load()).render().targets["L::out"]
+    assert out[47, 0].tolist() == [1, 1, 1, 1]  # lower left
+    assert out[0, 63].tolist() == [127, 95, 1, 1]  # upper right
