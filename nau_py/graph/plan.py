@@ -78,8 +78,10 @@ def _keep(graph: PassGraph, wanted: set[Resource]) -> set[int]:
         kept, across_frames = found, across_frames | history
 
 
-def _reason(graph: PassGraph, index: int) -> str:
+def _reason(graph: PassGraph, index: int, contracts: Contracts) -> str:
     pass_, access = graph.passes[index], graph.accesses[index]
+    if pass_.pass_class not in contracts:
+        return f"its class '{pass_.pass_class}' is not supported"
     if pass_.run_mode == "DONT_RUN":
         return "its mode is DONT_RUN"
     if not access.writes:
@@ -111,7 +113,7 @@ def make_plan(
             graph.passes[index],
             graph.accesses[index],
             index in kept,
-            "" if index in kept else _reason(graph, index),
+            "" if index in kept else _reason(graph, index, contracts),
         )
         for index in range(len(graph.passes))
     ]

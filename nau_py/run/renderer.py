@@ -79,6 +79,7 @@ class Renderer:
             raise ProjectError(errors)
         self.pipeline = choose_pipeline(project, pipeline)
         self.plan: Plan = make_plan(project, self.pipeline, pass_classes(), everything=keep_targets)
+        self._refuse_unsupported()
         self.time_step = time_step
         self._size = size or project.size
         self._options = options or RunOptions()
@@ -86,6 +87,21 @@ class Renderer:
         self._session: Session | None = None
         self._next = 0
         self._setup_ms = 0.0
+
+    def _refuse_unsupported(self) -> None:
+        known = pass_classes()
+        errors = [
+            error(
+                "P002",
+                pass_.where("class"),
+                f"pass '{pass_.name}': class '{pass_.pass_class}' is not supported by this "
+                f"version, so pipeline '{self.pipeline.name}' does not run",
+            )
+            for pass_ in self.pipeline.passes
+            if pass_.pass_class not in known
+        ]
+        if errors:
+            raise ProjectError(errors)
 
     @property
     def session(self) -> Session:

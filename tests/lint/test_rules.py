@@ -183,7 +183,7 @@ def test_the_demos_have_no_finding() -> None:
         ),
         (
             '<pass name="a" class="mesh"/>' + DRAW.format(""),
-            "P002 error `mesh` pass 'a': class 'mesh' is not supported by this version",
+            "P002 warning `mesh` pass 'a': class 'mesh' is not supported by this version",
         ),
         (
             '<pass name="a" class="compute"/>' + DRAW.format(""),

@@ -150,3 +150,15 @@ def test_plugin_pass_classes(folder: Folder, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setitem(pass_classes(), "painter", Painter())
     image = nau_py.Renderer(project(folder, '<pass name="p" class="painter"/>')).render().image
     assert (image == [255, 0, 0, 255]).all()
+
+
+def test_an_unsupported_class_stops_its_own_pipeline_only(folder: Folder) -> None:
+    loaded = project(folder, '<pass name="m" class="mesh"/>')
+    text = (folder.path / "project.xml").read_text()
+    other = '<pipeline name="R"><pass name="r"/></pipeline></pipelines>'
+    folder.write("project.xml", text.replace("</pipelines>", other))
+    loaded = folder.load()
+    with pytest.raises(nau_py.ProjectError, match="class 'mesh' is not supported"):
+        nau_py.Renderer(loaded, "Q")
+    assert nau_py.Renderer(loaded, "R").render().image.shape == (8, 8, 4)
+    assert nau_py.plan(loaded, "Q").steps[0].reason == "its class 'mesh' is not supported"

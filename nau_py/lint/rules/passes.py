@@ -20,9 +20,10 @@ P001 = rule(
 )
 P002 = rule(
     "P002",
-    ERROR,
+    WARNING,
     "Pass class not supported",
-    "Nau or one of its plug-ins has the class, this version of nau_py does not.",
+    "Nau or one of its plug-ins has the class, this version of nau_py does not. A pipeline with "
+    "such a pass does not run; the others do.",
     "<pass name='a' class='mesh'>",
     "<pass name='a' class='default'>",
 )
