@@ -8,7 +8,7 @@ from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.model.raytrace import RaytracePass
-from nau_py.passes.access import add_process, add_target, texture
+from nau_py.passes.access import add_process, target_reference, texture
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord
@@ -22,12 +22,14 @@ class RaytraceClass:
         if isinstance(pass_, RaytracePass):
             for source in pass_.rtInput:
                 access.add_read(texture(source.texture, None))
-            for output in pass_.rtOutput:
-                access.add_write(texture(output.texture, None))
         add_process(access, pass_)
-        add_target(access, project, pass_, clears=False)
-        written = [r for r in access.writes if r.kind == "texture"]
-        access.replaces += written
+        reference = target_reference(project, pass_)
+        library = (reference.fromLibrary if reference else None) or ""
+        target = project.render_target(library, (reference.name if reference else None) or "")
+        if target is not None and target.colors:
+            first = texture(target.colors[0].name, library)
+            access.add_write(first)
+            access.replaces.append(first)
         return access
 
     def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:

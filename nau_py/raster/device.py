@@ -38,6 +38,8 @@ class Device:
         info = self.ctx.info
         self.renderer = str(info["GL_RENDERER"])
         self.version = str(info["GL_VERSION"])
+        self.max_size = int(info["GL_MAX_TEXTURE_SIZE"])
+        """The largest width or height of a texture, texels."""
 
     @property
     def is_software(self) -> bool:

@@ -12,6 +12,7 @@ from nau_py.errors import NauError, ProjectError, ShaderError
 from nau_py.model.attributes.texture import channels
 from nau_py.model.buffer import Buffer
 from nau_py.model.linked import Project
+from nau_py.model.location import Location
 from nau_py.model.target import RenderTarget
 from nau_py.model.texture import ArrayOfTextures, CubeMap
 from nau_py.model.texture import Texture as TextureNode
@@ -43,12 +44,19 @@ class Resources:
         self.samplers = Samplers()
         self.geometry = Geometry(device.ctx)
         self.blocks = UniformBlocks(device.ctx)
+        self._check_size("the window", *window, project.file.location)
         self.window = window_target(*window)
         self.diagnostics: list[Diagnostic] = []
         self._targets: dict[str, Target] = {}
         self._textures: dict[str, Texture | None] = {}
         self._buffers: dict[str, Any] = {}
         self._programs: dict[tuple[str, str], Program | None] = {}
+
+    def _check_size(self, what: str, width: int, height: int, where: Location) -> None:
+        most = self.device.max_size
+        if not (1 <= width <= most and 1 <= height <= most):
+            message = f"{what} is {width} x {height}; this driver allows 1 to {most} each way"
+            raise ProjectError(error("P010", where, message))
 
     def target(self, library: str, name: str) -> Target:
         """A render target. Raises :class:`~nau_py.errors.ProjectError` where it is incomplete."""
@@ -67,11 +75,7 @@ class Resources:
             return self.project.value(node, "RENDER_TARGET", name)
 
         width, height = (int(v) for v in value("SIZE"))
-        if width < 1 or height < 1:
-            message = (
-                f"render target '{node.name}': SIZE is {width} x {height}, which holds no pixel"
-            )
-            raise ProjectError(error("P010", node.location, message))
+        self._check_size(f"render target '{node.name}'", width, height, node.location)
         colors = [
             Attachment(f"{library}::{c.name}", c.internalFormat or "RGBA") for c in node.colors
         ]
@@ -143,6 +147,7 @@ class Resources:
 
         fmt = str(self.project.value(node, type_, "INTERNAL_FORMAT")[0])
         width, height, depth = (max(number(k), 1) for k in ("WIDTH", "HEIGHT", "DEPTH"))
+        self._check_size(f"texture '{node.name}'", width, height, node.location)
         levels = max(number("LEVELS"), 1)
         if self.project.value(node, type_, "MIPMAP")[0]:
             levels = max(int(np.log2(max(width, height, depth))), 1)

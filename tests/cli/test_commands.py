@@ -140,6 +140,11 @@ def test_npy_keeps_the_values(tmp_path: Path) -> None:
         ),
         (["nau-run", "missing.xml"], 1, "no such file: missing.xml"),
         (["nau-run", SELECTIVE, "--size", "12"], 2, "'12' is no size"),
+        (
+            ["nau-run", SELECTIVE, "--pipeline", "Raster", "--size", "99999x8"],
+            1,
+            "error[P010]: the window is 99999 x 8; this driver allows 1 to ",
+        ),
         (["nau-run", SELECTIVE, "--frames", "5:2"], 2, "the last frame comes before the first"),
         (["nau-run", SELECTIVE, "--spp", "0"], 2, "--spp"),
         (["nau-run"], 2, "Missing argument 'PROJECT'"),
