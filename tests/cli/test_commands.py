@@ -251,3 +251,24 @@ def test_fmt_round_trip_and_check(folder: Folder) -> None:
     assert run("nau-fmt", "p.xml", "--check", cwd=folder.path).returncode == 1
     assert run("nau-fmt", "p.xml", "-o", "p.xml", cwd=folder.path).returncode == 0
     assert run("nau-fmt", "p.xml", "--check", cwd=folder.path).returncode == 0
+
+
+def test_explain_says_why_a_pass_is_left_out(folder: Folder) -> None:
+    folder.write(
+        "l.mlib",
+        '<materialLib name="L"><renderTargets><renderTarget name="rt"><SIZE width="4" height="4"/>'
+        '<colors><color name="c" internalFormat="RGBA"/></colors></renderTarget></renderTargets>'
+        "</materialLib>",
+    )
+    folder.write(
+        "project.xml",
+        '<project name="P" width="8" height="8"><assets><materialLibs><materialLib '
+        'filename="l.mlib"/></materialLibs></assets><pipelines><pipeline name="Q">'
+        '<pass name="spare"><renderTarget name="rt" fromLibrary="L"/></pass><pass name="show"/>'
+        "</pipeline></pipelines></project>",
+    )
+    done = run("nau-run", "project.xml", "--explain", cwd=folder.path)
+    assert done.returncode == 0
+    assert "left out" in done.stdout
+    assert "spare is left out: nothing that the picture needs reads" in done.stdout
+    assert "warning[D003]" in done.stderr
