@@ -6,8 +6,6 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
-import typer
-
 from nau_py.diagnostic import Diagnostic, error
 from nau_py.errors import NauError, OutputError
 from nau_py.files import write_text
@@ -35,14 +33,6 @@ def guarded(work: Callable[[], int], sources: Mapping[str, str], debug: bool) ->
     except KeyboardInterrupt:
         sys.stderr.write("interrupted\n")
         return 130
-
-
-def existing(path: Path) -> Path:
-    """Refuse a path that does not exist, as wrong usage."""
-    if not path.exists():
-        sys.stderr.write(f"no such file: {path}\n")
-        raise typer.Exit(FAILED)
-    return path
 
 
 def write_result(output: Path | None, text: str) -> None:

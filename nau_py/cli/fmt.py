@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from nau_py.cli.common import FAILED, existing, guarded, say, write_result
+from nau_py.cli.common import FAILED, guarded, say, write_result
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
@@ -36,7 +36,7 @@ def fmt(
     from nau_py.formats.load import YAML_SUFFIXES, is_library, load_library, load_project
     from nau_py.formats.write import format_node
 
-    path = existing(project)
+    path = project
     library = is_library(path)
     loaded = load_library(path) if library else load_project(path)
     broken = [d for d in lint(loaded) if d.rule in ("X001", "X002")]

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from nau_py.cli.common import existing, guarded, say, write_result
+from nau_py.cli.common import guarded, say, write_result
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
@@ -37,7 +37,7 @@ def graph(
     from nau_py.cli.common import FAILED
     from nau_py.graph.export import export
 
-    loaded = nau_py.load(existing(project))
+    loaded = nau_py.load(project)
     broken = [d for d in nau_py.lint(loaded) if d.rule in ("X001", "X002")]
     if broken:
         say(broken, loaded.sources)

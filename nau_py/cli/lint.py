@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from nau_py.cli.common import FAILED, existing
+from nau_py.cli.common import FAILED
 from nau_py.diagnostic import Diagnostic
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
@@ -28,7 +28,6 @@ def collect(paths: list[Path]) -> list[Path]:
     """Files to check: those given, and the projects and libraries below given folders."""
     found: list[Path] = []
     for path in paths:
-        existing(path)
         if path.is_dir():
             found += sorted(p for p in path.rglob("*") if _looks_like_a_project(p))
         else:

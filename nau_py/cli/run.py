@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from nau_py.cli.common import USAGE, existing, guarded, say, write_result
+from nau_py.cli.common import USAGE, guarded, say, write_result
 from nau_py.diagnostic import Severity
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
@@ -72,7 +72,6 @@ def run(
     if project is None:
         sys.stderr.write("Missing argument 'PROJECT'. Try 'nau-run --help'.\n")
         raise typer.Exit(USAGE)
-    existing(project)
     window, (first, last) = _size(size), _frames(frames)
     import nau_py
     from nau_py.cli.progress import progress_bar

@@ -138,7 +138,11 @@ def test_npy_keeps_the_values(tmp_path: Path) -> None:
             1,
             "its ending must be one of .png, .exr, .npy",
         ),
-        (["nau-run", "missing.xml"], 1, "no such file: missing.xml"),
+        (
+            ["nau-run", "missing.xml"],
+            1,
+            "missing.xml: error[X001]: 'missing.xml' cannot be read: No such file or directory",
+        ),
         (["nau-run", SELECTIVE, "--size", "12"], 2, "'12' is no size"),
         (
             ["nau-run", SELECTIVE, "--pipeline", "Raster", "--size", "99999x8"],
@@ -149,7 +153,6 @@ def test_npy_keeps_the_values(tmp_path: Path) -> None:
         (["nau-run", SELECTIVE, "--spp", "0"], 2, "--spp"),
         (["nau-run"], 2, "Missing argument 'PROJECT'"),
         (["nau-lint"], 2, "Missing argument"),
-        (["nau-lint", "missing.xml"], 1, "no such file: missing.xml"),
         (["nau-graph", SELECTIVE, "--format", "png"], 2, "png"),
         (["nau-fmt", SELECTIVE, "-o", "/nowhere/x.xml"], 1, "cannot be written"),
     ],
@@ -238,6 +241,9 @@ def test_doctor() -> None:
 
 def test_lint_statuses_and_formats(folder: Folder) -> None:
     assert run("nau-lint", "projects", "materials").returncode == 0
+    done = run("nau-lint", "missing.xml", cwd=folder.path)
+    assert done.returncode == 1
+    assert done.stdout.startswith("missing.xml: error[X001]: 'missing.xml' cannot be read")
     folder.write("project.xml", BAD["rays"][0])
     done = run("nau-lint", "project.xml", "--format", "json", cwd=folder.path)
     assert done.returncode == 1
