@@ -93,3 +93,17 @@ def test_characters_that_yaml_forbids_are_a_problem(folder: Folder) -> None:
     folder.write("project.yaml", "name: P\f\n")
     (problem,) = folder.load("project.yaml").problems
     assert problem.kind is ProblemKind.SYNTAX
+
+
+def test_findings_in_yaml_point_at_the_value(folder: Folder) -> None:
+    folder.write(
+        "project.yaml",
+        "name: P\nassets:\n  cameras:\n    - name: Eye\n      TYPE: PERSPECTIV\n"
+        "      UP: [0, 1, 0, 0, 7]\npipelines:\n  default: Q\n  pipeline:\n    - name: Q\n"
+        "      pass:\n        - name: a\n          class: quadd\n",
+    )
+    found = [
+        (d.rule, d.location.line, d.location.column)
+        for d in nau_py.lint(folder.load("project.yaml"))
+    ]
+    assert found == [("V005", 5, 7), ("S003", 6, 7), ("P001", 13, 18)]

@@ -107,6 +107,11 @@ def test_the_demos_have_no_finding() -> None:
             "V002 warning `1,` attribute 'value' of <STENCIL_OP_REF> is '1,' and is read as 1",
         ),
         (
+            DRAW.format("<DEPTH_CLEAR_VALUE value='1' unit='m'/>"),
+            "S003 warning `DEPTH_CLEAR_VALUE` attribute 'unit' (='m') of <DEPTH_CLEAR_VALUE> of "
+            "<pass> is unknown and ignored",
+        ),
+        (
             DRAW.format("<TEST_MODE value='RUN_IF'/>"),
             "V004 error `TEST_MODE` <TEST_MODE> is read-only; a file cannot set it",
         ),

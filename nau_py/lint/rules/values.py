@@ -274,6 +274,8 @@ def _setting(
 ) -> Iterator[Diagnostic]:
     what = f"<{tag}> of <{node.tag}>"
     where = setting.location
+    for key, value in setting.extra.items():
+        yield S003.at(where, f"attribute '{key}' (='{value}') of {what} is unknown and ignored")
     if attribute.values and setting.parts[0] not in attribute.values:
         known = list(attribute.values)
         yield V005.at(
