@@ -53,13 +53,16 @@ class SceneBuilder:
         objects = self._objects(scene)
         if not objects:
             return []
-        if (scene.type or "OctreeUnified") in _MERGED_TYPES:
+        merged = (scene.type or "OctreeUnified") in _MERGED_TYPES
+        if merged:
             baked = [transform_mesh(o.mesh, o.matrix) for o in objects]
             objects = [SceneObject("default", merge(baked))]
+            if scene.has_flag("UNITIZE"):  # its box is the merged object's: no scene transform
+                objects = _unitize(objects)
         if scene.filename is None:
             matrix = transform_of(self.project, scene, "SCENE")
             objects = [SceneObject(o.name, o.mesh, matrix @ o.matrix) for o in objects]
-        if scene.has_flag("UNITIZE"):
+        if scene.has_flag("UNITIZE") and not merged:
             objects = _unitize(objects)
         return objects
 

@@ -87,6 +87,8 @@ def pictures() -> list[dict[str, str]]:
 
 EXACT = [
     "atomics__atomics",
+    "barrel__textureModel",
+    "lighting__pointLight",
     "cubemap__cubemap3dsteapot",
     "geometry__geometry",
     "simple__simple",

@@ -98,6 +98,22 @@ def test_unitize_spans_the_cube(folder: Folder) -> None:
     np.testing.assert_allclose(points.max(axis=0), [1, 0.5, 0], atol=1e-6)
 
 
+def test_unitize_of_a_merged_scene_leaves_its_transform_alone(folder: Folder) -> None:
+    """The scene is made of unit size, then moved: as the real Nau draws the barrel project."""
+    folder.write("a.obj", "v 10 0 0\nv 14 0 0\nv 10 2 0\nf 1 2 3\n")
+    folder.write(
+        "project.xml",
+        WRAP.format(
+            "<scenes><scene name='S' param='UNITIZE'><file name='a.obj'/>"
+            "<TRANSLATE x='0' y='1' z='0'/></scene></scenes>"
+        ),
+    )
+    (item,) = World(folder.load(), (8, 8)).scenes["S"]
+    points = (item.mesh.positions.astype(float) @ item.matrix.T)[:, :3]
+    np.testing.assert_allclose(points.min(axis=0), [-1, 0.5, 0], atol=1e-6)
+    np.testing.assert_allclose(points.max(axis=0), [1, 1.5, 0], atol=1e-6)
+
+
 def test_vertices_that_are_not_finite_take_their_faces_along(folder: Folder) -> None:
     folder.write("a.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 2 4 3\n")
     folder.write(
