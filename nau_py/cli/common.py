@@ -6,10 +6,13 @@ import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
+import typer
+
 from nau_py.diagnostic import Diagnostic, error
 from nau_py.errors import NauError, OutputError
 from nau_py.files import write_text
 from nau_py.lint.report import to_text
+from nau_py.model.linked import Project
 from nau_py.model.location import NOWHERE
 
 FAILED = 1
@@ -19,6 +22,16 @@ USAGE = 2
 def say(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str]) -> None:
     """Write findings to stderr."""
     sys.stderr.write(to_text(diagnostics, sources))
+
+
+def stop_if_unreadable(project: Project) -> None:
+    """Say what is wrong and exit with status 1 where a file was not read (rules X001, X002)."""
+    from nau_py.api import lint
+
+    broken = [d for d in lint(project) if d.rule in ("X001", "X002")]
+    if broken:
+        say(broken, project.sources)
+        raise typer.Exit(FAILED)
 
 
 def guarded(work: Callable[[], int], sources: Mapping[str, str], debug: bool) -> int:

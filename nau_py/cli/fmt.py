@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from nau_py.cli.common import FAILED, guarded, say, write_result
+from nau_py.cli.common import FAILED, guarded, stop_if_unreadable, write_result
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
@@ -32,17 +32,13 @@ def fmt(
     debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
 ) -> None:
     """Format a file. Comments are not kept."""
-    from nau_py.api import lint
     from nau_py.formats.load import YAML_SUFFIXES, is_library, load_library, load_project
     from nau_py.formats.write import format_node
 
     path = project
     library = is_library(path)
     loaded = load_library(path) if library else load_project(path)
-    broken = [d for d in lint(loaded) if d.rule in ("X001", "X002")]
-    if broken:
-        say(broken, loaded.sources)
-        raise typer.Exit(FAILED)
+    stop_if_unreadable(loaded)
     own = Style.YAML if path.suffix.lower() in YAML_SUFFIXES else Style.XML
     node = loaded.libraries[-1] if library else loaded.file
     text = format_node(node, loaded.registry, (to or own).value)

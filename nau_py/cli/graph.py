@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from nau_py.cli.common import guarded, say, write_result
+from nau_py.cli.common import guarded, stop_if_unreadable, write_result
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
@@ -34,14 +34,10 @@ def graph(
 ) -> None:
     """Draw a pipeline, without a GL context."""
     import nau_py
-    from nau_py.cli.common import FAILED
     from nau_py.graph.export import export
 
     loaded = nau_py.load(project)
-    broken = [d for d in nau_py.lint(loaded) if d.rule in ("X001", "X002")]
-    if broken:
-        say(broken, loaded.sources)
-        raise typer.Exit(FAILED)
+    stop_if_unreadable(loaded)
 
     def work() -> int:
         write_result(output, export(nau_py.plan(loaded, pipeline), format.value))

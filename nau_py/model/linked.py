@@ -10,6 +10,7 @@ from nau_py.model.attributes import Registry
 from nau_py.model.library import DEFAULT_LIBRARY, MaterialLibrary
 from nau_py.model.material import Material
 from nau_py.model.node import Configured, Node
+from nau_py.model.passes import Pass
 from nau_py.model.pipeline import Pipeline
 from nau_py.model.problem import Problem
 from nau_py.model.project import Assets, ProjectFile
@@ -128,6 +129,27 @@ class Project:
                 if name in target.texture_names:
                     return library, target
         return None
+
+    def target_of(self, pass_: Pass) -> tuple[str, RenderTarget] | None:
+        """The render target (library name, node) that a pass draws into; None for the window.
+
+        ``sameas`` takes that of the last pass of the name that stands before this one, in any
+        pipeline (nau-format.md, 4.3).
+        """
+        reference = pass_.renderTarget
+        if reference is None:
+            return None
+        if reference.sameas:
+            found: Pass | None = None
+            for other in (p for pipeline in self.pipelines for p in pipeline.passes):
+                if other is pass_:
+                    break
+                if other.name == reference.sameas:
+                    found = other
+            return self.target_of(found) if found is not None else None
+        library = reference.fromLibrary or ""
+        target = self.render_target(library, reference.name or "")
+        return (library, target) if target is not None else None
 
     def names(self, kind: str) -> dict[str, Node]:
         """Everything of a ``kind`` that a reference can name, by qualified name.

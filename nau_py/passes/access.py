@@ -8,7 +8,7 @@ from nau_py.model.library import DEFAULT_LIBRARY, qualified
 from nau_py.model.linked import Project
 from nau_py.model.maps import InjectionMap
 from nau_py.model.material import BufferUnit
-from nau_py.model.passes import Pass, ProcessBuffer, ProcessTexture, TargetReference
+from nau_py.model.passes import Pass, ProcessBuffer, ProcessTexture
 
 
 def texture(name: str | None, library: str | None) -> Resource:
@@ -25,22 +25,6 @@ def buffer_of(project: Project, unit: BufferUnit, library: str) -> Resource:
     if unit.fromLibrary and own.name not in project.names("buffer"):
         return buffer(unit.name, unit.fromLibrary)
     return own
-
-
-def target_reference(project: Project, pass_: Pass) -> TargetReference | None:
-    """The render target of a pass, with ``sameas`` followed; None draws to the window."""
-    reference = pass_.renderTarget
-    seen: set[int] = set()
-    while reference is not None and reference.sameas and id(reference) not in seen:
-        seen.add(id(reference))
-        named = [
-            p
-            for pipeline in project.pipelines
-            for p in pipeline.passes
-            if p.name == reference.sameas and p is not pass_
-        ]
-        reference = named[-1].renderTarget if named else None
-    return reference
 
 
 def add_material(access: Access, project: Project, library: str, name: str) -> None:
@@ -102,14 +86,15 @@ def add_target(access: Access, project: Project, pass_: Pass, clears: bool) -> N
 
     ``clears``: the class clears its target first, unless the pass says otherwise.
     """
-    reference = target_reference(project, pass_)
-    if reference is None:
+    if pass_.renderTarget is None:
         access.add_write(WINDOW)
         return
-    library = reference.fromLibrary or ""
-    target = project.render_target(library, reference.name or "")
-    if target is None:
+    owner = project.target_of(pass_)
+    if owner is None:
+        if pass_.renderTarget.sameas:  # of a pass that draws into the window
+            access.add_write(WINDOW)
         return
+    library, target = owner
     colour = clears and bool((pass_.get("COLOR_CLEAR") or (True,))[0])
     depth = clears and bool((pass_.get("DEPTH_CLEAR") or (True,))[0])
     whole = pass_.viewport is None and not pass_.viewports

@@ -9,7 +9,7 @@ import numpy as np
 
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass, ProcessBuffer, ProcessTexture
-from nau_py.passes.access import buffer, target_reference, texture
+from nau_py.passes.access import buffer, texture
 from nau_py.passes.frame import FrameContext, PassRecord
 from nau_py.scene.mesh import F64
 from nau_py.scene.viewport import Rect
@@ -33,10 +33,10 @@ def viewport_names(pass_: Pass) -> list[str]:
 def target_and_rect(pass_: Pass, frame: FrameContext, uses_camera: bool) -> tuple[Target, Rect]:
     """Where a pass draws (nau-format.md, 11.5)."""
     session = frame.session
-    reference = target_reference(frame.project, pass_)
+    owner = frame.project.target_of(pass_)
     names = viewport_names(pass_)
     rect = frame.world.viewport(names[0]) if names else None
-    if reference is None:
+    if owner is None:
         if rect is None:
             rect = frame.rect
             if uses_camera:
@@ -44,7 +44,7 @@ def target_and_rect(pass_: Pass, frame: FrameContext, uses_camera: bool) -> tupl
                 kept = session.camera_rects.get(camera.name)
                 rect = kept or frame.world.viewport(camera.viewport)
         return session.resources.window, rect
-    target = session.resources.target(reference.fromLibrary or "", reference.name or "")
+    target = session.resources.target(owner[0], owner[1].name or "")
     if rect is None:
         rect = Rect(0.0, 0.0, float(target.width), float(target.height), target.clear)
         if uses_camera:
@@ -150,10 +150,6 @@ def process(items: Sequence[ProcessTexture | ProcessBuffer], frame: FrameContext
             found.generate_mipmaps()
 
 
-def covered(rect: Rect) -> int:
-    """Pixels of a rectangle."""
-    return max(int(rect.width), 0) * max(int(rect.height), 0)
-
-
 def note_pixels(record: PassRecord, frame: FrameContext) -> None:
-    record.pixels = covered(frame.rect)
+    """Record the pixels of the rectangle that the pass drew into."""
+    record.pixels = max(int(frame.rect.width), 0) * max(int(frame.rect.height), 0)

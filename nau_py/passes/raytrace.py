@@ -8,7 +8,7 @@ from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.model.raytrace import RaytracePass
-from nau_py.passes.access import add_process, target_reference, texture
+from nau_py.passes.access import add_process, texture
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord
@@ -23,11 +23,9 @@ class RaytraceClass:
             for source in pass_.rtInput:
                 access.add_read(texture(source.texture, None))
         add_process(access, pass_)
-        reference = target_reference(project, pass_)
-        library = (reference.fromLibrary if reference else None) or ""
-        target = project.render_target(library, (reference.name if reference else None) or "")
-        if target is not None and target.colors:
-            first = texture(target.colors[0].name, library)
+        owner = project.target_of(pass_)
+        if owner is not None and owner[1].colors:
+            first = texture(owner[1].colors[0].name, owner[0])
             access.add_write(first)
             access.replaces.append(first)
         return access

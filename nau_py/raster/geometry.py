@@ -46,6 +46,12 @@ class Geometry:
         self._meshes[id(mesh)] = (mesh, gpu)
         return gpu
 
+    def release(self) -> None:
+        """Delete the vertex arrays; the buffers are moderngl's."""
+        gl.delete_vertex_arrays(list(self._arrays.values()))
+        self._arrays.clear()
+        self._meshes.clear()
+
     def vertex_array(self, mesh: Mesh, program: Program) -> int:
         """The vertex array that feeds ``mesh`` to ``program``, inputs matched by name."""
         key = (id(mesh), program.mgl.glo)

@@ -114,6 +114,14 @@ def delete_textures(names: list[int]) -> None:
     GL.glDeleteTextures(len(names), np.array(names, np.uint32))
 
 
+def delete_samplers(names: list[int]) -> None:
+    GL.glDeleteSamplers(len(names), np.array(names, np.uint32))
+
+
+def delete_vertex_arrays(names: list[int]) -> None:
+    GL.glDeleteVertexArrays(len(names), np.array(names, np.uint32))
+
+
 def delete_framebuffer(name: int) -> None:
     GL.glDeleteFramebuffers(1, np.array([name], np.uint32))
 

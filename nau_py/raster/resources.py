@@ -49,8 +49,20 @@ class Resources:
         self.diagnostics: list[Diagnostic] = []
         self._targets: dict[str, Target] = {}
         self._textures: dict[str, Texture | None] = {}
+        self._owners: dict[str, tuple[str, RenderTarget] | None] = {}
+        self._cleared: list[Any] = []
         self._buffers: dict[str, Any] = {}
         self._programs: dict[tuple[str, str], Program | None] = {}
+
+    def release(self) -> None:
+        """Delete every GPU object that moderngl does not own."""
+        for texture in self._textures.values():
+            if texture is not None:
+                texture.delete()
+        for target in (*self._targets.values(), self.window):
+            target.delete()
+        self.geometry.release()
+        self.samplers.release()
 
     def _check_size(self, what: str, width: int, height: int, where: Location) -> None:
         most = self.device.max_size
@@ -107,7 +119,9 @@ class Resources:
 
         None, with one diagnostic, where it cannot be made.
         """
-        owner = self.project.target_of_texture(name)
+        if name not in self._owners:
+            self._owners[name] = self.project.target_of_texture(name)
+        owner = self._owners[name]
         if owner is not None:
             return self.target(owner[0], owner[1].name or "").textures.get(name)
         if name not in self._textures:
@@ -177,19 +191,16 @@ class Resources:
                     message = f"buffer '{name}': its file cannot be read: {problem}"
                     self.diagnostics.append(error("B001", node.location, message))
                     content = b""
-                self._buffers[name] = self.device.ctx.buffer(content) if content else None
+                if content:
+                    self._buffers[name] = self.device.ctx.buffer(content)
+                    if self.project.value(node, "BUFFER", "CLEAR")[0] == "BY_FRAME":
+                        self._cleared.append(self._buffers[name])
         return self._buffers[name]
 
     def clear_buffers_by_frame(self) -> None:
         """Fill the buffers whose CLEAR is BY_FRAME with zero (nau-format.md, 11.1)."""
-        for name, node in self.project.names("buffer").items():
-            made = self._buffers.get(name)
-            if (
-                made is not None
-                and isinstance(node, Buffer)
-                and (self.project.value(node, "BUFFER", "CLEAR")[0] == "BY_FRAME")
-            ):
-                made.clear()
+        for made in self._cleared:
+            made.clear()
 
     def program(self, library: str, name: str) -> Program | None:
         """A program; None, with its diagnostics, where it does not compile."""

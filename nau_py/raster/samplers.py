@@ -44,6 +44,11 @@ class Samplers:
             self._made[key] = self._make(dict(settings), mipmap)
         return self._made[key]
 
+    def release(self) -> None:
+        """Delete every sampler."""
+        gl.delete_samplers(list(self._made.values()))
+        self._made.clear()
+
     def _make(self, settings: dict[str, tuple[Scalar, ...]], mipmap: bool) -> int:
         sampler = gl.create_sampler()
 

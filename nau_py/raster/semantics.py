@@ -170,11 +170,17 @@ def _material(context: DrawContext, name: str) -> RenderMaterial | None:
     return context.world.materials.get(library, material)
 
 
-def _pass(context: DrawContext, component: str) -> Value | None:
+def _pass(context: DrawContext, name: str, component: str) -> Value | None:
+    """A PASS attribute of the running pass, or of ``pipeline#pass``."""
     project = context.world.project
-    if component not in project.registry["PASS"]:
+    pass_: Pass | None = context.pass_
+    if name != "CURRENT":
+        pipeline, _, short = name.partition("#")
+        found = project.pipeline(pipeline)
+        pass_ = next((p for p in found.passes if p.name == short), None) if found else None
+    if pass_ is None or component not in project.registry["PASS"]:
         return None
-    values = project.value(context.pass_, "PASS", component)
+    values = project.value(pass_, "PASS", component)
     return None if not values or isinstance(values[0], str) else _scalars(values)
 
 
@@ -194,7 +200,7 @@ def resolve(
     if type_ == "VIEWPORT":
         return _viewport(context, name, component)
     if type_ == "PASS":
-        return _pass(context, component)
+        return _pass(context, name, component)
     if type_ == "COLOR":
         material = _material(context, name)
         colour = material.colours.get(component) if material else None
@@ -207,6 +213,9 @@ def resolve(
         return np.array([index]) if component == "UNIT" else None
     if type_ in ("ARRAY_OF_TEXTURES_BINDING", "ARRAY_OF_IMAGE_TEXTURES"):
         material = _material(context, name)
-        units = sorted(material.textures) if material else []
-        return np.array(units[index:]) if component == "SAMPLER_ARRAY" else None
+        images = type_ == "ARRAY_OF_IMAGE_TEXTURES"
+        arrays = (material.image_arrays if images else material.texture_arrays) if material else []
+        if index >= len(arrays) or component not in ("SAMPLER_ARRAY", "FIRST_UNIT"):
+            return None
+        return np.array(arrays[index] if component == "SAMPLER_ARRAY" else arrays[index][:1])
     return context.resources.value(type_, name, component, index, context)

@@ -44,7 +44,7 @@ class LaunchResult:
 class _Tile:
     colours: F32
     counts: RayCounts
-    variance: float
+    variance: NDArray[np.float64]
 
 
 def select(mask: NDArray[Any] | None, width: int, height: int) -> NDArray[np.int64]:
@@ -57,8 +57,8 @@ def select(mask: NDArray[Any] | None, width: int, height: int) -> NDArray[np.int
     return np.flatnonzero(mask.reshape(-1) > 0)
 
 
-def _average(samples: F32, valid: NDArray[np.bool_]) -> tuple[F32, float]:
-    """Means of (n, s, 4) over s, and the summed variance of the colour means.
+def _average(samples: F32, valid: NDArray[np.bool_]) -> tuple[F32, NDArray[np.float64]]:
+    """Means of (n, s, 4) over s; variance of the colour mean of each, (n,), summed over RGB.
 
     Accumulates in float64 sample by sample, so that the result does not depend on n.
     """
@@ -73,7 +73,7 @@ def _average(samples: F32, valid: NDArray[np.bool_]) -> tuple[F32, float]:
     mean = total / kept
     spread = np.maximum(squares / kept - mean[:, :3] ** 2, 0)
     many = np.where(kept > 1, spread / np.maximum(kept - 1, 1), 0)
-    return mean.astype(np.float32), float(many.sum())
+    return mean.astype(np.float32), many[:, 0] + many[:, 1] + many[:, 2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,15 +126,15 @@ def run_launch(
     step = max(settings.tile // settings.samples, 1)
     starts = range(0, len(pixels), step)
     result = LaunchResult(np.zeros((len(pixels), 4), np.float32))
-    variance = 0.0
+    variance = np.zeros(len(pixels))
     threads = settings.threads or os.cpu_count() or 1
     with ThreadPoolExecutor(max_workers=threads) as pool:
         tiles = pool.map(lambda start: work.tile(pixels[start : start + step]), starts)
         for start, tile in zip(starts, tiles):
             result.colours[start : start + step] = tile.colours
             result.counts.merge(tile.counts)
-            variance += tile.variance
+            variance[start : start + step] = tile.variance
             progress(min(start + step, len(pixels)), len(pixels))
     if settings.samples > 1 and len(pixels):
-        result.est_error = float(np.sqrt(variance / (3 * len(pixels))))
+        result.est_error = float(np.sqrt(variance.sum() / (3 * len(pixels))))
     return result

@@ -120,7 +120,7 @@ class Renderer:
         errors = [d for d in world.diagnostics if d.severity is Severity.ERROR]
         if errors:
             raise ProjectError(errors)
-        self.diagnostics += world.diagnostics
+        self._note(world.diagnostics)
         resources = Resources(device(), self.project, self._size)
         return Session(
             self.project,
@@ -140,7 +140,7 @@ class Renderer:
         if frame < 0:
             raise ValueError(f"frame {frame}: frames are counted from 0")
         if frame < self._next:
-            self._session, self._next = None, 0
+            self.close()
         records: list[PassRecord] = []
         start = perf_counter()
         _ = self.session  # loading is not part of a frame's time
@@ -159,6 +159,12 @@ class Renderer:
             self._setup_ms,
         )
         return Frame(frame, image, targets, report)
+
+    def close(self) -> None:
+        """Free the GPU objects. Rendering again starts from frame 0."""
+        if self._session is not None:
+            self._session.resources.release()
+        self._session, self._next = None, 0
 
     def _step(self, index: int) -> list[PassRecord]:
         session = self.session
@@ -184,7 +190,7 @@ class Renderer:
             context.session.resources.check()
         except NauError:
             raise
-        except (MemoryError, ArithmeticError, LookupError, TypeError, ValueError, OSError) as bug:
+        except Exception as bug:
             message = (
                 f"pass '{step.name}' of pipeline '{self.pipeline.name}' failed: "
                 f"{type(bug).__name__}: {bug}"
@@ -212,10 +218,16 @@ class Renderer:
                 texture = resources.texture(resource.name)
                 if texture is not None and texture.layers == 1:
                     targets[resource.name] = np.ascontiguousarray(texture.read()[::-1])
+        image = targets.get(self.plan.output.name)
+        if not self.plan.running or (self.plan.output != WINDOW and image is None):
+            message = (
+                f"pipeline '{self.pipeline.name}' draws no picture: no pass of it draws into the "
+                "window or into a two-dimensional texture"
+            )
+            self._note([warning("E003", self.pipeline.location, message)])
         if self.plan.output == WINDOW:
             window = next(iter(resources.window.textures.values()))
             return np.ascontiguousarray(window.read()[::-1]), targets
-        image = targets.get(self.plan.output.name)
         if image is None:
             width, height = self._size
             image = np.zeros((height, width, 4), np.uint8)

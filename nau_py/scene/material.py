@@ -67,18 +67,29 @@ class RenderMaterial:
     textures: dict[int, TextureBinding] = field(default_factory=dict)
     images: dict[int, ImageBinding] = field(default_factory=dict)
     buffers: list[BufferBinding] = field(default_factory=list)
+    texture_arrays: list[tuple[int, ...]] = field(default_factory=list)
+    """Units of each array of textures, by position in the material."""
+    image_arrays: list[tuple[int, ...]] = field(default_factory=list)
+    """Image units of each array of images, by position in the material."""
     state: dict[str, tuple[Scalar, ...]] = field(default_factory=dict)
     program: tuple[str, str] = (DEFAULT_LIBRARY, "dirLightDifAmbPix")
     uniforms: tuple[UniformSource, ...] = ()
 
     def clone(self, library: str) -> RenderMaterial:
-        """A copy for an injection map: sampler and image settings are lost, as in Nau (4.7)."""
+        """A copy for an injection map: sampler and image settings and image arrays are lost, as in
+        Nau (4.7)."""
         return replace(
             self,
             library=library,
             colours=dict(self.colours),
             textures={u: replace(b, sampler=()) for u, b in self.textures.items()},
-            images={u: replace(b, settings=()) for u, b in self.images.items()},
+            images={
+                u: replace(b, settings=())
+                for u, b in self.images.items()
+                if not any(u in array for array in self.image_arrays)
+            },
+            texture_arrays=list(self.texture_arrays),
+            image_arrays=[],
             buffers=list(self.buffers),
             state=dict(self.state),
         )
@@ -183,6 +194,11 @@ def _bind_images(
         for index in range(texture_count(project, array)):
             binding = ImageBinding(f"{full}_{index}", parts_of(node.settings))
             material.images[node.FIRST_UNIT + index] = binding
+        material.image_arrays.append(units(node.FIRST_UNIT, texture_count(project, array)))
+
+
+def units(first: int, count: int) -> tuple[int, ...]:
+    return tuple(range(first, first + count))
 
 
 def texture_count(project: Project, array: ArrayOfTextures) -> int:
@@ -199,3 +215,4 @@ def _bind_array(
         return
     for index in range(texture_count(project, array)):
         material.textures[first + index] = TextureBinding(f"{full}_{index}")
+    material.texture_arrays.append(units(first, texture_count(project, array)))

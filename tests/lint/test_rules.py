@@ -299,6 +299,12 @@ def test_pass_findings(folder: Folder, passes: str, expected: str) -> None:
         ),
         (
             MIRROR,
+            "<rtGlobalParams><param name='x' type='GRID' context='g' component='LENGTH'"
+            "/></rtGlobalParams>",
+            "L007 warning `GRID` 'LENGTH' of type GRID is not supplied by this version",
+        ),
+        (
+            MIRROR,
             "<rtGlobalParams><param name='x' type='LIGHT' context='Son' component='COLOR'"
             "/></rtGlobalParams>",
             "R017 error `Son` context 'Son' is no light of the project",
@@ -437,6 +443,7 @@ def test_every_rule_explains_itself() -> None:
         assert rule.explanation.endswith(".")
         assert rule.bad
         assert rule.good
+        assert rule.bad != rule.good
 
 
 def test_the_rules_page_is_up_to_date() -> None:

@@ -157,6 +157,8 @@ def test_the_same_picture_whatever_threads_and_tiles(
     np.testing.assert_array_equal(
         frame.targets["Hybrid::radiance"], selective.targets["Hybrid::radiance"]
     )
+    error = passes(frame)["trace"]["est_error"]
+    assert error == passes(selective)["trace"]["est_error"]
 
 
 def test_another_seed_is_another_picture_of_the_same_scene(selective: nau_py.Frame) -> None:

@@ -67,9 +67,9 @@ def test_clear_colour_and_scissor(folder: Folder) -> None:
 
 
 def test_rows_run_from_the_top(folder: Folder) -> None:
-    frag = "#version 330\nout vec4 c;\nvoid main() { c = vec4(gl_FragCoord.y / 255.0); }\n"
+    frag = "#version 330\nout vec4 c;\nvoid main() { c = vec4(floor(gl_FragCoord.y) / 255.0); }\n"
     image = render(folder, frag).image
-    assert image[:, 0, 0].tolist() == [6, 5, 4, 3, 2, 1] or image[0, 0, 0] > image[-1, 0, 0]
+    assert image[:, 0, 0].tolist() == [5, 4, 3, 2, 1, 0]
 
 
 FORMATS = [
@@ -331,3 +331,17 @@ def test_buffers_begin_with_their_file_and_compute_reads_them(folder: Folder) ->
     frame = nau_py.Renderer(folder.load()).render()
     # records (int, float): (1, 2.5) (3, 4) (5, 6), then zeros up to DIM
     assert frame.targets["L::t"][-1, 0].tolist() == [1, 2.5, 5, 0]
+
+
+def test_a_uniform_takes_an_attribute_of_a_named_pass(folder: Folder) -> None:
+    """Context ``pipeline#pass`` (nau-format.md, 8.2): the other pass's value, not the own one."""
+    value = '<DEPTH_CLEAR_VALUE value="{}"/>'
+    passes = QUAD.format('<viewport name="V"/>' + value.format("0.2")).replace('"q"', '"first"')
+    passes += QUAD.format('<viewport name="V"/>' + value.format("0.6"))
+    image = render(
+        folder,
+        "#version 330\nuniform float d;\nout vec4 c;\nvoid main() { c = vec4(d); }\n",
+        passes,
+        values='<valueof uniform="d" type="PASS" context="Q#first" component="DEPTH_CLEAR_VALUE"/>',
+    ).image
+    assert (image == 51).all()

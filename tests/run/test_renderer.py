@@ -83,6 +83,39 @@ def test_run_modes(folder: Folder, mode: str, values: list[int]) -> None:
         assert status["status"] == "run" or f"its mode is {mode}" in status["reason"]
 
 
+def test_a_closed_renderer_starts_again(folder: Folder) -> None:
+    renderer = nau_py.Renderer(project(folder, PING.format(mode="") + PONG + SHOW))
+    renderer.render(1)
+    renderer.close()
+    assert renderer.render(0).targets["L::cb"][0, 0, 0] == 2
+
+
+def test_sameas_draws_into_the_target_of_the_last_earlier_pass(folder: Folder) -> None:
+    """The pass of the same name that stands later does not count (nau-format.md, 4.3)."""
+    same = (
+        '<pass name="same" class="quad"><material name="readB" fromLibrary="L"/>'
+        '<renderTarget sameas="ping"/></pass>'
+    )
+    later = PONG.replace("pong", "ping")
+    loaded = project(folder, PING.format(mode="") + same + later + SHOW)
+    targets = {p.name: loaded.target_of(p) for p in loaded.pipelines[0].passes[:2]}
+    assert targets["same"] == targets["ping"]
+    owner = targets["same"]
+    assert owner is not None
+    assert owner[1].name == "a"
+
+
+def test_a_pipeline_that_draws_nothing_says_so(folder: Folder) -> None:
+    """No black picture without a diagnostic."""
+    renderer = nau_py.Renderer(project(folder, ""))
+    renderer.render()
+    found = [d for d in renderer.diagnostics if d.rule == "E003"]
+    assert [d.message.split(":")[0] for d in found] == ["pipeline 'Q' draws no picture"]
+    drawn = nau_py.Renderer(project(folder, PING.format(mode="") + PONG + SHOW))
+    drawn.render()
+    assert not [d for d in drawn.diagnostics if d.rule == "E003"]
+
+
 def test_a_pass_that_nobody_needs_is_left_out_with_its_reason(folder: Folder) -> None:
     passes = PING.format(mode="") + '<pass name="show" class="quad"/>'
     loaded = project(folder, passes)

@@ -65,14 +65,10 @@ D006 = rule(
 )
 
 
-def target_of(project: Project, pass_: Pass) -> list[str] | None:
-    """Qualified names of the textures of a pass's own render target; None for the window."""
-    reference = pass_.renderTarget
-    if reference is None or reference.sameas:
-        return None
-    library = reference.fromLibrary or ""
-    target = project.render_target(library, reference.name or "")
-    return [f"{library}::{name}" for name in target.texture_names] if target else None
+def target_textures(project: Project, pass_: Pass) -> list[str]:
+    """Qualified names of the textures of a pass's render target; none for the window."""
+    owner = project.target_of(pass_)
+    return [f"{owner[0]}::{name}" for name in owner[1].texture_names] if owner else []
 
 
 def _plans(facts: Facts) -> Iterator[Plan]:
@@ -106,9 +102,9 @@ def flow(facts: Facts) -> Iterator[Diagnostic]:
                         f"'{plan.pipeline}' writes",
                     )
             feedback = [r for r in access.reads if r in access.writes and r not in access.keeps]
-            own = target_of(project, pass_)
+            own = target_textures(project, pass_)
             for resource in feedback:
-                if own is not None and resource.name in own:
+                if resource.name in own:
                     yield D004.at(
                         pass_.location,
                         f"cycle: pass '{pass_.name}' samples {resource} while drawing into it",
@@ -133,7 +129,7 @@ def raytrace_inputs(facts: Facts) -> Iterator[Diagnostic]:
         sized = {
             name: p.viewport.name if p.viewport else None
             for p in pipeline.passes
-            for name in target_of(project, p) or []
+            for name in target_textures(project, p)
         }
         for pass_ in pipeline.passes:
             if pass_.pass_class in RAYTRACE_CLASSES and isinstance(pass_, RaytracePass):
@@ -143,11 +139,8 @@ def raytrace_inputs(facts: Facts) -> Iterator[Diagnostic]:
 def _inputs(
     project: Project, pass_: RaytracePass, sized: dict[str, str | None]
 ) -> Iterator[Diagnostic]:
-    reference = pass_.renderTarget
-    target = project.render_target(
-        (reference.fromLibrary if reference else None) or "",
-        (reference.name if reference else None) or "",
-    )
+    owned = project.target_of(pass_)
+    target = owned[1] if owned else None
     if target is not None and target.colors:
         fmt = target.colors[0].internalFormat or "RGBA"
         if fmt.endswith("I"):

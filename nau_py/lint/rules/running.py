@@ -1,4 +1,4 @@
-"""E, G, M and T: what only running a project finds; registered here for the reference page."""
+"""L: what this version does not run; and what only running finds, for the reference page."""
 
 from __future__ import annotations
 
@@ -8,7 +8,28 @@ from nau_py.diagnostic import Diagnostic
 from nau_py.lint.rule import ERROR, NOTE, WARNING, Facts, check, rule
 from nau_py.lint.walk import nodes
 from nau_py.model.events import Interpolator, Route, Sensor
+from nau_py.model.material import ValueOf
 from nau_py.model.passes import SceneReferences, Script
+from nau_py.model.raytrace import RayVariable
+
+UNSUPPLIED_TYPES = (
+    "STATE",
+    "ARRAY_OF_TEXTURES",
+    "BUFFER",
+    "BUFFER_MATERIAL",
+    "BUFFER_BINDING",
+    "PASS_PRE_PROCESS_TEXTURE",
+    "PASS_POST_PROCESS_TEXTURE",
+    "PASS_PRE_PROCESS_BUFFER",
+    "PASS_POST_PROCESS_BUFFER",
+    "SCENE",
+    "SCENE_OBJECT",
+    "SPHERE",
+    "GRID",
+    "PHYSICS_MANAGER",
+    "PHYSICS_MATERIAL",
+)
+"""Object types of which uniforms and parameters get no value yet."""
 
 L001 = rule(
     "L001",
@@ -34,6 +55,14 @@ L004 = rule(
     "<scenes drawIndirectBuffer='L::b'>",
     "<scenes>",
 )
+L007 = rule(
+    "L007",
+    WARNING,
+    "Value is not supplied",
+    "This version has no values of that object type; the uniform keeps the value it has.",
+    "<valueof uniform='s' type='SCENE' context='S' component='SCALE'/>",
+    "<valueof uniform='s' type='RENDERER' context='CURRENT' component='MODEL'/>",
+)
 L005 = rule(
     "L005",
     WARNING,
@@ -58,52 +87,154 @@ L002 = rule(
     "<physicsLib filename='a.plib'/>",
     "leave it out",
 )
-for id_, severity, title, why in (
+for row in (
     (
         "D101",
         ERROR,
         "No OpenGL driver",
         "Running needs OpenGL 4.5; Mesa's software driver will do.",
+        "a machine without libegl1",
+        "apt-get install libegl1 libgl1 libgl1-mesa-dri",
     ),
-    ("E001", ERROR, "Pass failed", "A pass failed for a reason that no other rule covers."),
+    (
+        "E001",
+        ERROR,
+        "Pass failed",
+        "A pass failed for a reason that no other rule covers.",
+        "a plug-in pass that raises",
+        "a plug-in pass that raises NauError with a diagnostic",
+    ),
     (
         "E002",
         ERROR,
         "Output cannot be written",
         "The file could not be written, or its ending is unknown.",
+        "nau-run p.xml -o picture.gif",
+        "nau-run p.xml -o picture.png",
     ),
-    ("B001", ERROR, "Buffer file unreadable", "The initial content of a buffer could not be read."),
-    ("G001", ERROR, "GLSL error", "The driver rejects a shader; the place is in the shader file."),
-    ("G002", ERROR, "Shader file unreadable", "A shader file could not be read."),
-    ("G003", ERROR, "Shader does not link", "The stages of a program do not fit together."),
+    (
+        "E003",
+        WARNING,
+        "No picture",
+        "No pass of the pipeline draws into the window or a two-dimensional texture.",
+        "<pipeline name='P'></pipeline>",
+        "<pipeline name='P'><pass name='draw'/></pipeline>",
+    ),
+    (
+        "B001",
+        ERROR,
+        "Buffer file unreadable",
+        "The initial content of a buffer could not be read.",
+        "<file name='data.txt'/> holding words",
+        "<file name='data.txt'/> holding numbers",
+    ),
+    (
+        "G001",
+        ERROR,
+        "GLSL error",
+        "The driver rejects a shader; the place is in the shader file.",
+        "outColor = colour; // undeclared",
+        "uniform vec4 colour; … outColor = colour;",
+    ),
+    (
+        "G002",
+        ERROR,
+        "Shader file unreadable",
+        "A shader file could not be read.",
+        "ps='shaders' (a folder)",
+        "ps='shaders/lit.frag'",
+    ),
+    (
+        "G003",
+        ERROR,
+        "Shader does not link",
+        "The stages of a program do not fit together.",
+        "out vec4 v; (vertex) and in vec3 v; (fragment)",
+        "out vec3 v; and in vec3 v;",
+    ),
     (
         "G004",
         ERROR,
         "Stage not supported",
         "Mesh, task and tessellation stages do not run.",
+        "<shader name='s' ms='a.mesh' ps='a.frag'/>",
+        "<shader name='s' vs='a.vert' ps='a.frag'/>",
     ),
-    ("M001", ERROR, "Model unreadable", "A model file could not be read; what is wrong is said."),
-    ("M002", ERROR, "Geometry not supported", "Terrain and buffers are not supported yet."),
-    ("M003", WARNING, "Vertices not finite", "Faces with such vertices are left out."),
-    ("M004", WARNING, "Model texture missing", "The material is drawn without the texture."),
-    ("P010", ERROR, "Render target incomplete", "The driver cannot make such a framebuffer."),
-    ("T010", ERROR, "Ray program raised", "A program failed; the place is its own source line."),
-    ("T011", ERROR, "Ray program returned the wrong thing", "Shape or type is not what is needed."),
+    (
+        "M001",
+        ERROR,
+        "Model unreadable",
+        "A model file could not be read; what is wrong is said.",
+        "f 1 2 9 in an OBJ with 3 vertices",
+        "f 1 2 3",
+    ),
+    (
+        "M002",
+        ERROR,
+        "Geometry not supported",
+        "Terrain and buffers are not supported yet.",
+        "<terrain name='t' heightMap='h.png'/>",
+        "<file name='terrain.obj'/>",
+    ),
+    (
+        "M003",
+        WARNING,
+        "Vertices not finite",
+        "Faces with such vertices are left out.",
+        "v nan 0 0",
+        "v 0 0 0",
+    ),
+    (
+        "M004",
+        WARNING,
+        "Model texture missing",
+        "The material is drawn without the texture.",
+        "map_Kd gone.png",
+        "map_Kd wood.png",
+    ),
+    (
+        "P010",
+        ERROR,
+        "Render target incomplete",
+        "The driver cannot make such a target, or one of that size.",
+        "<SIZE width='99999' height='8'/>",
+        "<SIZE width='1024' height='8'/>",
+    ),
+    (
+        "T010",
+        ERROR,
+        "Ray program raised",
+        "A program failed; the place is its own source line.",
+        "def shade(hits): return hits.nothing",
+        "def shade(hits): return hits.color('DIFFUSE')",
+    ),
+    (
+        "T011",
+        ERROR,
+        "Ray program returned the wrong thing",
+        "Shape or type is not what is needed.",
+        "def shade(hits): return 'red'",
+        "def shade(hits): return [1.0, 0.0, 0.0]",
+    ),
     (
         "T012",
         ERROR,
         "Ray program not trusted",
-        "Programs load from the project's folder, its "
-        "libraries' folders and the package; --allow-programs DIR adds one.",
+        "Programs load from the project's folder, its libraries' folders and the package; "
+        "--allow-programs DIR adds one.",
+        "file='/elsewhere/shade.py'",
+        "file='programs/shade.py'",
     ),
     (
         "T014",
         WARNING,
         "Samples that are not finite",
         "They are dropped, or painted by the exception program, and counted.",
+        "return light / distance",
+        "return light / np.maximum(distance, 1e-6)",
     ),
 ):
-    rule(id_, severity, title, why, "see the message", "see the message")
+    rule(*row)
 
 
 @check
@@ -153,6 +284,17 @@ def every_pipeline(facts: Facts) -> Iterator[Diagnostic]:
         yield L006.at(
             pipelines.where("mode"), "mode RUN_ALL: a run draws one pipeline; name it by --pipeline"
         )
+
+
+@check
+def values(facts: Facts) -> Iterator[Diagnostic]:
+    """Uniforms and parameters of object types without values."""
+    for node in nodes(facts.project):
+        if isinstance(node, ValueOf | RayVariable) and node.type in UNSUPPLIED_TYPES:
+            yield L007.at(
+                node.where("type"),
+                f"'{node.component}' of type {node.type} is not supplied by this version",
+            )
 
 
 @check
