@@ -33,7 +33,7 @@ class RaytraceClass:
     def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
         from nau_py.passes.drawing import pass_value, process, target_and_rect
         from nau_py.passes.tracing import read_inputs, read_mask, store_colours, tracing_state
-        from nau_py.raytrace.camera import camera_rays
+        from nau_py.raytrace.camera import camera_rays, camera_record
         from nau_py.raytrace.launch import LaunchSettings, Work, run_launch, select
 
         if not isinstance(pass_, RaytracePass) or pass_.rtEntryPoint is None:
@@ -56,8 +56,15 @@ class RaytraceClass:
             state.generate,
             state.exception,
             width,
+            camera_record(frame.camera, rect, state.geometry.centre),
             camera_rays(frame.camera, rect),
-            LaunchSettings(samples, options.threads, options.tile),
+            LaunchSettings(
+                samples,
+                options.threads,
+                options.tile,
+                str(pass_value(frame.project, pass_, "SAMPLER")),
+            ),
+            state.label,
         )
         progress = frame.session.progress
         result = run_launch(work, pixels, lambda done, total: progress(name, done, total))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.diagnostic import warning
-from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, EXCEPTION, MISS, RAY_GENERATION
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
 from nau_py.model.maps import matches
@@ -24,8 +24,8 @@ from nau_py.raytrace.accel import Accelerator
 from nau_py.raytrace.geometry import RayGeometry, gather
 from nau_py.raytrace.hits import RayLight, RayMaterial
 from nau_py.raytrace.programs import ProgramLoader, TrustRule
+from nau_py.raytrace.scene import ProgramTable, Scene, TexelStore, TraceSettings
 from nau_py.raytrace.texture import RayTexture
-from nau_py.raytrace.tracer import ProgramTable, Scene
 from nau_py.scene.images import ImageError, load_image
 from nau_py.scene.material import RenderMaterial, TextureBinding
 
@@ -48,26 +48,30 @@ class TracingState:
         self.session = session
         self.geometry: RayGeometry = gather(session.world.objects(pass_.scene_names))
         self.accelerator: Accelerator = Accelerator(self.geometry)
-        self._textures: dict[TextureBinding, Any] = {}
+        self.texels = TexelStore()
+        self._textures: dict[TextureBinding, RayTexture | None] = {}
         loader = _loader(session)
         entry = pass_.rtEntryPoint
         assert entry is not None
         label = f"project '{session.project.name}', pass '{pass_.name}'"
         self.label = label
         generate = entry.rayGen or Program(file="builtin", proc="pinhole")
-        self.generate = loader.load(generate, f"{label}, ray generation program '{generate.proc}'")
+        self.generate = loader.load(
+            generate, f"{label}, ray generation program '{generate.proc}'", RAY_GENERATION
+        )
         self.exception = None
         if entry.exception is not None:
-            proc = entry.exception.proc
-            self.exception = loader.load(entry.exception, f"{label}, exception program '{proc}'")
+            what = f"{label}, exception program '{entry.exception.proc}'"
+            self.exception = loader.load(entry.exception, what, EXCEPTION)
+        self.mapped = session.pass_materials(pass_)
         self.programs = self._bind(pass_, loader)
 
     def _render_material(self, name: str) -> RenderMaterial | None:
-        return self.session.world.materials.get(DEFAULT_LIBRARY, name)
+        return self.mapped[name] or self.session.world.materials.get(DEFAULT_LIBRARY, name)
 
     def _entry(self, pass_: RaytracePass, name: str) -> RayMaterialNode | None:
         """The programs of a material: its exact entry, a prefix's, else the default's (7.1)."""
-        mapped = self.session.pass_materials(pass_)[name]
+        mapped = self.mapped[name]
         names = {name}
         if mapped is not None:
             names |= {f"{mapped.library}:{mapped.name}", f"{mapped.library}::{mapped.name}"}
@@ -98,14 +102,14 @@ class TracingState:
                             f"{self.label}, material '{name}', {kind} program '{node.proc}' of "
                             f"ray type '{ray_type}'"
                         )
-                        table[ray_type, kind][index] = loader.load(node, label)
+                        table[ray_type, kind][index] = loader.load(node, label, kind)
             miss = _program(pass_.rtDefaultMaterial, ray_type, MISS)
             if miss is not None:
                 label = f"{self.label}, MISS program '{miss.proc}' of ray type '{ray_type}'"
-                table[ray_type, MISS] = [loader.load(miss, label)]
+                table[ray_type, MISS] = [loader.load(miss, label, MISS)]
         return table
 
-    def _texture(self, binding: TextureBinding) -> Any:
+    def _texture(self, binding: TextureBinding) -> RayTexture | None:
         if binding not in self._textures:
             path = binding.path or _library_image(self.session.project, binding.texture)
             made = None
@@ -153,14 +157,19 @@ class TracingState:
             _variables(pass_.rtGlobalParams, context),
             inputs,
             pass_.ray_types,
-            int(pass_value(frame.project, pass_, "MAX_DEPTH")),
-            frame.session.options.seed,
-            np.array(frame.rect.clear if target.name == "window" else target.clear, np.float32),
+            TraceSettings(
+                int(pass_value(frame.project, pass_, "MAX_DEPTH")),
+                frame.session.options.seed,
+                int(pass_value(frame.project, pass_, "LIGHT_SAMPLES")),
+                float(pass_value(frame.project, pass_, "OCCLUSION_DISTANCE")),
+                frame.rect.clear if target.name == "window" else target.clear,
+            ),
+            self.texels,
         )
 
     def _material(
         self, pass_: RaytracePass, name: str, render: RenderMaterial | None, context: Any
-    ) -> Any:
+    ) -> RayMaterial:
         if render is None:
             return RayMaterial(name, {}, {})
         textures = {

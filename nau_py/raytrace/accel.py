@@ -1,20 +1,23 @@
 """Embree behind one class; nobody else imports embreex.
 
-embreex's edges are covered here: always robust, never a ray that is not finite, occlusion without
-its broken ``output``, and an empty scene that answers with misses.
+The library inside embreex's wheel is called through its C interface: compiled kernels send single
+rays (``kernels/embree.py``) without a Python object in between, with their own ``tmax``. Scenes are
+always robust, an empty one answers with misses, and no ray that is not finite is ever sent.
 """
 
 from __future__ import annotations
 
 import ctypes
+import weakref
+from ctypes import c_char_p, c_int, c_size_t, c_ssize_t, c_uint, c_void_p
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import embreex
+import llvmlite.binding
 import numpy as np
-from embreex.mesh_construction import TriangleMesh
-from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
 from nau_py.raytrace.geometry import RayGeometry
@@ -22,22 +25,53 @@ from nau_py.raytrace.vectors import F32, Mask
 
 NO_HIT = -1
 _VERSION_PROPERTY = 0  # RTC_DEVICE_PROPERTY_VERSION of rtcore_device.h
+_TRIANGLES, _INDEX, _VERTEX = 0, 0, 1  # rtcore_geometry.h, rtcore_buffer.h
+_UINT3, _FLOAT3 = 0x5003, 0x9003  # rtcore_common.h
+_ROBUST = 1 << 2  # RTC_SCENE_FLAG_ROBUST
+_FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
+    "rtcNewDevice": (c_void_p, [c_char_p]),
+    "rtcGetDeviceProperty": (c_ssize_t, [c_void_p, c_int]),
+    "rtcGetDeviceError": (c_int, [c_void_p]),
+    "rtcNewScene": (c_void_p, [c_void_p]),
+    "rtcReleaseScene": (None, [c_void_p]),
+    "rtcSetSceneFlags": (None, [c_void_p, c_int]),
+    "rtcNewGeometry": (c_void_p, [c_void_p, c_int]),
+    "rtcReleaseGeometry": (None, [c_void_p]),
+    "rtcSetSharedGeometryBuffer": (
+        None,
+        [c_void_p, c_int, c_uint, c_int, c_void_p, c_size_t, c_size_t, c_size_t],
+    ),
+    "rtcCommitGeometry": (None, [c_void_p]),
+    "rtcAttachGeometry": (c_uint, [c_void_p, c_void_p]),
+    "rtcCommitScene": (None, [c_void_p]),
+}
+
+
+@lru_cache(maxsize=1)
+def _library() -> ctypes.CDLL:
+    """Embree, with its symbols known to compiled kernels."""
+    package = Path(embreex.__file__).parent
+    found = [*sorted((package.parent / "embreex.libs").glob("libembree*"))]
+    found += [p for p in sorted(package.rglob("*embree4*")) if p.suffix in (".dll", ".dylib")]
+    if not found:
+        raise ImportError(f"the Embree library is not inside embreex at {package}")
+    llvmlite.binding.load_library_permanently(str(found[0]))
+    library = ctypes.CDLL(str(found[0]))
+    for name, (result, arguments) in _FUNCTIONS.items():
+        function = getattr(library, name)
+        function.restype, function.argtypes = result, arguments
+    return library
+
+
+@lru_cache(maxsize=1)
+def _device() -> int:
+    return int(_library().rtcNewDevice(None))
 
 
 def embree_version() -> str:
-    """The version of the Embree library inside embreex's wheel; ``4`` where it does not say."""
-    folder = Path(embreex.__file__).parent.parent / "embreex.libs"
-    for file in sorted(folder.glob("libembree*")):
-        library = ctypes.CDLL(str(file))
-        library.rtcNewDevice.restype = ctypes.c_void_p
-        library.rtcGetDeviceProperty.restype = ctypes.c_ssize_t
-        library.rtcGetDeviceProperty.argtypes = [ctypes.c_void_p, ctypes.c_int]
-        library.rtcReleaseDevice.argtypes = [ctypes.c_void_p]
-        device = library.rtcNewDevice(None)
-        number = int(library.rtcGetDeviceProperty(device, _VERSION_PROPERTY))
-        library.rtcReleaseDevice(device)
-        return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
-    return "4"
+    """The version of the Embree library inside embreex's wheel."""
+    number = int(_library().rtcGetDeviceProperty(_device(), _VERSION_PROPERTY))
+    return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
 
 
 @dataclass(slots=True)
@@ -52,38 +86,82 @@ class Intersections:
 
 
 class Accelerator:
-    """An acceleration structure over the triangles of a :class:`RayGeometry`."""
+    """Acceleration structures over the triangles of a :class:`RayGeometry`.
+
+    What stands still and what moves lie in two Embree scenes, ``scene`` and ``moving``: handles
+    for kernels, 0 where there is no triangle. Positions are world space less the centre.
+    """
 
     def __init__(self, geometry: RayGeometry) -> None:
-        self._scene: Any = None
-        if len(geometry.triangles):
-            self._scene = EmbreeScene(robust=True)
-            TriangleMesh(self._scene, geometry.vertices, geometry.triangles)
-            probe = np.zeros((1, 3), np.float32)
-            self._scene.run(probe, np.ones((1, 3), np.float32))  # builds before threads come
+        self.first_moving = geometry.first_moving
+        self._kept: dict[str, tuple[Any, Any]] = {}
+        self.scene = self._build("scene", geometry, slice(0, geometry.first_moving))
+        self.moving = 0
+        self.rebuild_moving(geometry)
+
+    def rebuild_moving(self, geometry: RayGeometry) -> None:
+        """Build anew what moves; ``geometry`` has the same triangles at other places."""
+        self.moving = self._build("moving", geometry, slice(geometry.first_moving, None))
+
+    def _build(self, name: str, geometry: RayGeometry, part: slice) -> int:
+        triangles = np.ascontiguousarray(geometry.triangles[part], np.uint32)
+        if not len(triangles):
+            return 0
+        vertices = np.zeros((len(geometry.vertices) + 1, 3), np.float32)  # Embree reads 16 bytes
+        vertices[:-1] = geometry.vertices
+        rtc, device = _library(), _device()
+        scene = rtc.rtcNewScene(device)
+        rtc.rtcSetSceneFlags(scene, _ROBUST)
+        mesh = rtc.rtcNewGeometry(device, _TRIANGLES)
+        place, count = vertices.ctypes.data, len(geometry.vertices)
+        rtc.rtcSetSharedGeometryBuffer(mesh, _VERTEX, 0, _FLOAT3, place, 0, 12, count)
+        place, count = triangles.ctypes.data, len(triangles)
+        rtc.rtcSetSharedGeometryBuffer(mesh, _INDEX, 0, _UINT3, place, 0, 12, count)
+        rtc.rtcCommitGeometry(mesh)
+        rtc.rtcAttachGeometry(scene, mesh)
+        rtc.rtcReleaseGeometry(mesh)
+        rtc.rtcCommitScene(scene)
+        if problem := rtc.rtcGetDeviceError(device):
+            raise MemoryError(f"Embree could not build {len(triangles)} triangles: error {problem}")
+        owner = _Handle(vertices, triangles)
+        weakref.finalize(owner, rtc.rtcReleaseScene, scene)
+        self._kept[name] = (owner, scene)
+        return int(scene)
+
+    def _record(self) -> NDArray[Any]:
+        from nau_py.raytrace.kernels.tables import SCENE
+
+        record = np.zeros(1, SCENE)
+        record["standing"], record["moving"] = self.scene, self.moving
+        record["first_moving"] = self.first_moving
+        return record
 
     def intersect(self, origin: F32, direction: F32, tmax: F32 | None = None) -> Intersections:
-        """Nearest hits of float32 (n, 3) rays, finite ones only; ``tmax`` float32 (n,)."""
-        count = len(origin)
-        if self._scene is None or not count:
-            zero = np.zeros(count, np.float32)
-            return Intersections(np.full(count, NO_HIT, np.int32), zero, zero, zero)
-        found = self._scene.run(
-            np.ascontiguousarray(origin, np.float32),
-            np.ascontiguousarray(direction, np.float32),
-            dists=None if tmax is None else np.array(tmax, np.float32),
-            output=True,
-        )
-        return Intersections(found["primID"], found["u"], found["v"], found["tfar"])
+        """Nearest hits of float32 (n, 3) rays; ``tmax`` float32 (n,). Rays that are not finite
+        hit nothing."""
+        from nau_py.raytrace.kernels.batch import intersect
+
+        n = len(origin)
+        found = Intersections(np.empty(n, np.int32), *np.zeros((3, n), np.float32))
+        limit = np.array([np.inf] if tmax is None else tmax, np.float32)
+        o, d = np.ascontiguousarray(origin, "f4"), np.ascontiguousarray(direction, "f4")
+        intersect(self._record(), o, d, limit, found.triangle, found.u, found.v, found.t)
+        return found
 
     def occluded(self, origin: F32, direction: F32, tmax: F32 | None = None) -> Mask:
         """Whether anything is hit, bool (n,)."""
-        if self._scene is None or not len(origin):
-            return np.zeros(len(origin), bool)
-        found = self._scene.run(
-            np.ascontiguousarray(origin, np.float32),
-            np.ascontiguousarray(direction, np.float32),
-            dists=None if tmax is None else np.array(tmax, np.float32),
-            query="OCCLUDED",
-        )
-        return np.asarray(found != NO_HIT)
+        from nau_py.raytrace.kernels.batch import occluded
+
+        limit = np.array([np.inf] if tmax is None else tmax, np.float32)
+        o, d = np.ascontiguousarray(origin, "f4"), np.ascontiguousarray(direction, "f4")
+        found = np.zeros(len(o), bool)
+        occluded(self._record(), o, d, limit, found)
+        return found
+
+
+@dataclass(eq=False)
+class _Handle:
+    """Keeps the buffers of a scene alive as long as the scene."""
+
+    vertices: F32
+    triangles: NDArray[np.uint32]

@@ -1,45 +1,55 @@
-"""Primary rays through the points that the rasteriser samples."""
+"""The camera as kernels read it, and primary rays for programs of a project."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from nau_py.raytrace.kernels import launch
 from nau_py.raytrace.vectors import F32
 from nau_py.scene.camera import CameraState
+from nau_py.scene.mesh import F64
 from nau_py.scene.viewport import Rect
 
 CameraRays = Callable[[F32, F32], tuple[F32, F32]]
 
 
-def camera_rays(camera: CameraState, rect: Rect) -> CameraRays:
+def camera_record(camera: CameraState, rect: Rect, centre: F64 | None = None) -> NDArray[Any]:
+    """The record of ``camera`` over the viewport ``rect``, relative to ``centre``; shape (1,)."""
+    made = np.zeros(1, launch.CAMERA)
+    v = camera.values
+    made["position"] = camera.position - (0.0 if centre is None else centre)
+    made["forward"], made["right"], made["up"] = camera.forward, camera.right, camera.true_up
+    if camera.ortho:
+        made["low"], made["high"] = (v["LEFT"], v["BOTTOM"]), (v["RIGHT"], v["TOP"])
+    else:
+        width, height = camera.half_extent(rect.aspect)
+        made["low"], made["high"] = (-width, -height), (width, height)
+    made["corner"], made["size"] = (rect.x, rect.y), (rect.width, rect.height)
+    made["near"], made["ortho"] = v["NEAR"], camera.ortho
+    made["aperture"] = v["APERTURE"]
+    made["focus"] = v["FOCUS_DISTANCE"]
+    return made
+
+
+def camera_rays(camera: CameraState, rect: Rect, centre: F64 | None = None) -> CameraRays:
     """A function from image points, pixels from the lower left corner of the target, to rays.
 
     Pixel (i, j) is rasterised at (i + 0.5, j + 0.5). Origins lie on the near plane, so that rays
     see what the rasteriser does not clip; directions are unit vectors. Computed in float64,
-    returned as float32 (n, 3), world space.
+    returned as float32 (n, 3), world space less ``centre``.
     """
-    near = camera.values["NEAR"]
-    forward, right, up = camera.forward, camera.right, camera.true_up
-    half_width, half_height = camera.half_extent(rect.aspect)
+    record = camera_record(camera, rect, centre)
 
-    def perspective(x: F32, y: F32) -> tuple[F32, F32]:
-        sx = ((x.astype(np.float64) - rect.x) / rect.width * 2 - 1) * half_width
-        sy = ((y.astype(np.float64) - rect.y) / rect.height * 2 - 1) * half_height
-        plane = forward + sx[:, None] * right + sy[:, None] * up
-        length = np.sqrt(plane[:, 0] ** 2 + plane[:, 1] ** 2 + plane[:, 2] ** 2)
-        origin = camera.position + plane * near
-        return origin.astype(np.float32), (plane / length[:, None]).astype(np.float32)
+    def rays(x: F32, y: F32) -> tuple[F32, F32]:
+        origin = np.empty((len(x), 3), np.float32)
+        direction = np.empty((len(x), 3), np.float32)
+        launch.camera_rays(
+            record, np.asarray(x, np.float64), np.asarray(y, np.float64), origin, direction
+        )
+        return origin, direction
 
-    def orthographic(x: F32, y: F32) -> tuple[F32, F32]:
-        v = camera.values
-        u = (x.astype(np.float64) - rect.x) / rect.width
-        w = (y.astype(np.float64) - rect.y) / rect.height
-        across = v["LEFT"] + u * (v["RIGHT"] - v["LEFT"])
-        along = v["BOTTOM"] + w * (v["TOP"] - v["BOTTOM"])
-        origin = camera.position + forward * near + across[:, None] * right + along[:, None] * up
-        direction = np.broadcast_to(forward, origin.shape)
-        return origin.astype(np.float32), direction.astype(np.float32)
-
-    return orthographic if camera.ortho else perspective
+    return rays

@@ -1,34 +1,60 @@
-"""The triangles of a pass as one array, in world space, with what programs read at a hit."""
+"""The triangles of a pass as one array about their centre, with what programs read at a hit."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.raytrace.vectors import F32
-from nau_py.scene.mesh import SceneObject, transform_mesh
+from nau_py.scene.mesh import F64, SceneObject, transform_mesh
 
 I32 = NDArray[np.int32]
+FAR_FACTOR = 4.0
+"""A scene is moved to the origin where its centre lies further off than this many half sizes."""
+
+
+@dataclass(slots=True)
+class Dropped:
+    """Faces left out, by reason, and the first of each: (object, face index)."""
+
+    counts: dict[str, int] = field(default_factory=dict)
+    first: dict[str, tuple[str, int]] = field(default_factory=dict)
+
+    def add(self, reason: str, owner: str, faces: NDArray[np.bool_]) -> None:
+        if faces.any():
+            self.counts[reason] = self.counts.get(reason, 0) + int(faces.sum())
+            self.first.setdefault(reason, (owner, int(np.argmax(faces))))
 
 
 @dataclass(slots=True)
 class RayGeometry:
-    """All triangles: ``vertices`` float32 (n, 3) and ``triangles`` int32 (m, 3), world space.
+    """All triangles: ``vertices`` float32 (n, 3) and ``triangles`` int32 (m, 3).
 
-    ``material``: int32 (m,) index into ``materials``, the material group names. Attribute arrays
-    are float32 (n, 4); a missing one is None.
+    World space less ``centre``, float64 (3,): zero unless the scene lies far off. ``material``:
+    int32 (m,) index into ``materials``, the material group names; ``item``: int32 (m,) index of
+    the object. Attribute arrays are float32 (n, 4); a missing one is None. The last ``moving``
+    triangles belong to objects that move.
     """
 
     vertices: F32
     triangles: I32
     material: I32
     materials: list[str]
-    normal: F32 | None
-    uv: F32 | None
-    tangent: F32 | None
+    normal: F32 | None = None
+    uv: F32 | None = None
+    tangent: F32 | None = None
+    item: I32 = field(default_factory=lambda: np.zeros(0, np.int32))
+    centre: F64 = field(default_factory=lambda: np.zeros(3))
+    moving: int = 0
+    dropped: Dropped = field(default_factory=Dropped)
+
+    @property
+    def first_moving(self) -> int:
+        return len(self.triangles) - self.moving
 
 
 def _joined(parts: list[dict[str, Any]], counts: list[int], name: str) -> F32 | None:
@@ -39,38 +65,108 @@ def _joined(parts: list[dict[str, Any]], counts: list[int], name: str) -> F32 | 
     )
 
 
-def gather(objects: list[SceneObject]) -> RayGeometry:
-    """The triangles of ``objects`` with their transforms applied; other primitives are left out."""
+def _sound(points: F64, faces: I32, owner: str, dropped: Dropped) -> NDArray[np.bool_]:
+    """Which faces are kept: not those without area, nor those beyond what Embree takes."""
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    with np.errstate(all="ignore"):
+        finite = np.asarray(np.isfinite(a + b + c).all(axis=1))
+        huge = finite & (np.abs(np.stack([a, b, c])).max(axis=(0, 2)) > HUGE)
+        none = np.asarray((np.cross(b - a, c - a) == 0).all(axis=1) & finite)
+    dropped.add("not finite", owner, ~finite)
+    dropped.add("too large", owner, huge)
+    dropped.add("without area", owner, none)
+    return np.asarray(finite & ~huge & ~none)
+
+
+HUGE = 1.844e18
+"""Coordinates beyond this are outside what Embree accepts (its FLT_LARGE)."""
+
+
+def _duplicates(vertices: F32, triangles: I32) -> NDArray[np.bool_]:
+    """Faces whose three corners another, later face has as well, however it is wound."""
+    _, same = np.unique(vertices, axis=0, return_inverse=True)
+    keys = np.sort(same.reshape(-1)[triangles], axis=1)[::-1]  # the last of equals is kept
+    _, first = np.unique(keys, axis=0, return_index=True)
+    repeated = np.ones(len(triangles), bool)
+    repeated[len(triangles) - 1 - first] = False
+    return repeated
+
+
+def gather(objects: list[SceneObject], moving: Collection[str] = ()) -> RayGeometry:
+    """The triangles of ``objects`` with their transforms applied; other primitives are left out.
+
+    ``moving``: names of objects that change place. Faces that no ray can hit well are left out and
+    listed in ``dropped``: without area, not finite, too large, or the same as a later one.
+    """
+    objects = [o for o in objects if o.mesh.primitive == "TRIANGLES"]
+    objects.sort(key=lambda o: o.name in moving)
     parts: list[dict[str, Any]] = []
     counts: list[int] = []
+    points: list[F64] = []
     triangles: list[I32] = []
     owners: list[I32] = []
+    items: list[I32] = []
     names: dict[str, int] = {}
-    offset = 0
-    for item in objects:
-        if item.mesh.primitive != "TRIANGLES":
-            continue
+    dropped = Dropped()
+    offset, first_moving = 0, 0
+    for number, item in enumerate(objects):
         mesh = item.mesh
+        wide = mesh.positions.astype(np.float64) @ item.matrix.T
         if not np.array_equal(item.matrix, np.eye(4)):
             mesh = transform_mesh(mesh, item.matrix)
         parts.append(mesh.attributes)
         counts.append(mesh.vertex_count)
+        points.append(wide[:, :3])
         for group in mesh.groups:
+            faces = group.indices.astype(np.int32).reshape(-1, 3)
+            faces = faces[_sound(wide[:, :3], faces, item.name, dropped)]
             index = names.setdefault(group.material, len(names))
-            triangles.append(group.indices.astype(np.int32) + np.int32(offset))
-            owners.append(np.full(len(group.indices), index, np.int32))
+            triangles.append(faces + np.int32(offset))
+            owners.append(np.full(len(faces), index, np.int32))
+            items.append(np.full(len(faces), number, np.int32))
         offset += mesh.vertex_count
+        if item.name not in moving:
+            first_moving = sum(len(t) for t in triangles)
     if not triangles:
         empty = np.zeros((0, 3), np.float32)
         none = np.zeros((0, 3), np.int32)
-        return RayGeometry(empty, none, np.zeros(0, np.int32), [], None, None, None)
-    vertices = np.concatenate([p["position"][:, :3] for p in parts])
+        zero = np.zeros(0, np.int32)
+        return RayGeometry(empty, none, zero, [], dropped=dropped)
+    everywhere = np.concatenate(points)
+    faces = np.concatenate(triangles)
+    centre = _centre(everywhere, faces)
+    with np.errstate(over="ignore"):
+        vertices = (everywhere - centre).astype(np.float32)
+    owner, item_of = np.concatenate(owners), np.concatenate(items)
+    repeated = _duplicates(vertices, faces) if len(faces) else np.zeros(0, bool)
+    if repeated.any():
+        at = int(np.argmax(repeated))
+        dropped.counts["the same as another"] = int(repeated.sum())
+        dropped.first["the same as another"] = (objects[item_of[at]].name, at)
+        first_moving -= int(repeated[:first_moving].sum())
+        faces, owner, item_of = faces[~repeated], owner[~repeated], item_of[~repeated]
     return RayGeometry(
-        np.ascontiguousarray(vertices, np.float32),
-        np.ascontiguousarray(np.concatenate(triangles)),
-        np.concatenate(owners),
+        vertices,
+        np.ascontiguousarray(faces),
+        owner,
         list(names),
         _joined(parts, counts, "normal"),
         _joined(parts, counts, "texCoord0"),
         _joined(parts, counts, "tangent"),
+        item_of,
+        centre,
+        len(faces) - first_moving,
+        dropped,
     )
+
+
+def _centre(points: F64, faces: I32) -> F64:
+    """Where the scene is moved from: zero for one that lies about the origin."""
+    if not len(faces):
+        return np.zeros(3)
+    used = points[np.unique(faces)]
+    low, high = used.min(axis=0), used.max(axis=0)
+    middle = low + (high - low) / 2
+    half = float(np.max(high - low)) / 2
+    far = float(np.abs(middle).max()) > FAR_FACTOR * half
+    return middle if far else np.zeros(3)

@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from nau_py.model.attributes.color import COLOR
+from nau_py.raytrace.kernels import batch
 from nau_py.raytrace.random import uniform
-from nau_py.raytrace.spawn import spawn, surface_point
 from nau_py.raytrace.texture import WHITE, RayTexture
-from nau_py.raytrace.vectors import F32, dot, normalize
+from nau_py.raytrace.vectors import F32
 
 if TYPE_CHECKING:
     from nau_py.raytrace.tracer import Tracer
@@ -33,6 +34,11 @@ class RayMaterial:
     textures: dict[int, RayTexture]
     variables: dict[str, NDArray[Any]] = field(default_factory=dict)
 
+    def colour(self, name: str) -> tuple[float, ...]:
+        """The values of a COLOR attribute; its default where the material has none."""
+        found = self.colours.get(name)
+        return found if found is not None else tuple(float(v) for v in COLOR.default(name))
+
 
 @dataclass(frozen=True, slots=True)
 class RayLight:
@@ -48,7 +54,10 @@ class RayLight:
 
 @dataclass(slots=True)
 class Rays:
-    """A batch of rays. ``pixel`` uint32 and ``sample`` uint32 (n,) key the random numbers."""
+    """A batch of rays. ``pixel`` uint32 and ``sample`` uint32 (n,) key the random numbers.
+
+    ``origin`` is relative to the centre of the scene, which is zero unless it lies far off.
+    """
 
     tracer: Tracer
     origin: F32
@@ -63,21 +72,23 @@ class Rays:
 
     @property
     def lights(self) -> list[RayLight]:
-        return self.tracer.lights
+        return self.tracer.scene.lights
 
     @property
     def variables(self) -> dict[str, NDArray[Any]]:
         """Values of the pass's global parameters, by name."""
-        return self.tracer.variables
+        return self.tracer.scene.variables
 
     @property
     def clear_color(self) -> F32:
         """The clear colour of the render target, float32 (4,)."""
-        return self.tracer.clear_color
+        return self.tracer.scene.clear_color
 
     def random(self, dimension: int) -> F32:
         """Numbers in [0, 1), float32 (n,), that depend on pixel, sample, depth and dimension."""
-        return uniform(self.tracer.seed, self.pixel, self.sample, dimension + 1024 * self.depth)
+        return uniform(
+            self.tracer.scene.settings.seed, self.pixel, self.sample, dimension + 1024 * self.depth
+        )
 
 
 class Hits:
@@ -89,7 +100,7 @@ class Hits:
         self.rays = rays
         self.triangle, self.u, self.v, self.t = triangle, u, v, t
         self.material = material
-        self._geometry = rays.tracer.geometry
+        self._geometry = rays.tracer.scene.geometry
 
     def __len__(self) -> int:
         return len(self.triangle)
@@ -113,66 +124,69 @@ class Hits:
         """Values of the pass's global parameters and of the material's, by name."""
         return self.rays.variables | self.material.variables
 
+    @property
+    def _scene(self) -> NDArray[Any]:
+        return self.rays.tracer.scene.tables.record
+
     @cached_property
     def _surface(self) -> tuple[F32, F32, F32]:
-        corners = self._geometry.triangles[self.triangle]
-        v0, v1, v2 = (self._geometry.vertices[corners[:, k]] for k in range(3))
-        return surface_point(v0, v1, v2, self.u, self.v)
+        position, face = np.empty((2, len(self), 3), np.float32)
+        bound = np.empty(len(self), np.float32)
+        batch.surface_points(self._scene, self.triangle, self.u, self.v, position, face, bound)
+        return position, face, bound
 
-    @property
+    @cached_property
     def position(self) -> F32:
-        """Hit points from barycentrics, (n, 3)."""
-        return self._surface[0]
+        """Hit points from barycentrics, world space, (n, 3)."""
+        centre = self._geometry.centre
+        if not centre.any():
+            return self._surface[0]
+        return (self._surface[0] + centre).astype(np.float32)
 
     @property
     def face_normal(self) -> F32:
         """Unit normals of the triangles, as wound, (n, 3)."""
         return self._surface[1]
 
-    def _interpolate(self, values: F32 | None) -> F32 | None:
-        if values is None:
-            return None
-        corners = self._geometry.triangles[self.triangle]
-        u, v = self.u[:, None], self.v[:, None]
-        a, b, c = (values[corners[:, k]] for k in range(3))
-        return np.asarray(a * (1 - u - v) + b * u + c * v, np.float32)
+    def _interpolate(self, values: F32 | None, components: int) -> F32:
+        result = np.zeros((len(self), components), np.float32)
+        if values is not None:
+            address = np.ascontiguousarray(values).ctypes.data
+            batch.attributes(self._scene, address, self.triangle, self.u, self.v, result)
+        return result
 
     @cached_property
     def normal(self) -> F32:
         """Unit shading normals, (n, 3): the face normal where a vertex has none."""
-        values = self._interpolate(self._geometry.normal)
-        if values is None:
-            return self.face_normal
-        smooth = values[:, :3]
-        missing = dot(smooth, smooth) < 1e-12
-        unit = normalize(np.where(missing[:, None], self.face_normal, smooth))
-        return np.asarray(unit, np.float32)
+        result = np.empty((len(self), 3), np.float32)
+        face = self.face_normal
+        batch.shading_normals(self._scene, self.triangle, self.u, self.v, face, result)
+        return result
 
     @cached_property
     def facing_normal(self) -> F32:
         """Shading normals turned towards where the ray came from, (n, 3)."""
-        away = dot(self.normal, self.direction) > 0
-        return np.where(away[:, None], -self.normal, self.normal)
+        result = np.empty((len(self), 3), np.float32)
+        batch.faced(self.normal, self.direction, result)
+        return result
 
     @cached_property
     def uv(self) -> F32:
         """texCoord0, (n, 2); zero where the mesh has none."""
-        values = self._interpolate(self._geometry.uv)
-        return np.zeros((len(self), 2), np.float32) if values is None else values[:, :2]
+        return self._interpolate(self._geometry.uv, 2)
 
     @cached_property
     def tangent(self) -> F32:
         """Tangents, (n, 3); zero where the mesh has none."""
-        values = self._interpolate(self._geometry.tangent)
-        return np.zeros((len(self), 3), np.float32) if values is None else values[:, :3]
+        return self._interpolate(self._geometry.tangent, 3)
 
     def color(self, name: str) -> F32:
         """A colour of the material (DIFFUSE, SPECULAR, AMBIENT, EMISSION), float32 (3,)."""
-        return np.array(self.material.colours[name][:3], np.float32)
+        return np.array(self.material.colour(name)[:3], np.float32)
 
     @property
     def shininess(self) -> float:
-        return float(self.material.colours["SHININESS"][0])
+        return float(self.material.colour("SHININESS")[0])
 
     def has_texture(self, unit: int = 0) -> bool:
         return unit in self.material.textures
@@ -200,10 +214,12 @@ class Hits:
         the ray type's name). Rays longer than MAX_DEPTH bring 0; a miss without a miss program
         brings ``initial``.
         """
-        wide = np.broadcast_to(np.asarray(direction, np.float32), (len(self), 3))
-        position, normal, bound = self._surface
-        unit = np.asarray(normalize(wide), np.float32)
-        origin = spawn(position, normal, bound, unit)
+        wide = np.ascontiguousarray(
+            np.broadcast_to(np.asarray(direction, np.float32), (len(self), 3))
+        )
+        position, face, bound = self._surface
+        origin, unit = np.empty((2, len(self), 3), np.float32)
+        batch.departures(position, face, bound, wide, origin, unit)
         rays = Rays(
             self.rays.tracer,
             origin,
@@ -238,19 +254,19 @@ class Launch:
 
     @property
     def variables(self) -> dict[str, NDArray[Any]]:
-        return self.tracer.variables
+        return self.tracer.scene.variables
 
     @property
     def ray_types(self) -> list[str]:
-        return self.tracer.ray_types
+        return self.tracer.scene.ray_types
 
     def input(self, name: str) -> NDArray[Any]:
         """The values of an input buffer at the pixels, (n, channels)."""
-        return np.asarray(self.tracer.inputs[name][self.y, self.x])
+        return np.asarray(self.tracer.scene.inputs[name][self.y, self.x])
 
     def random(self, dimension: int) -> F32:
         """Numbers in [0, 1), float32 (n,)."""
-        return uniform(self.tracer.seed, self.pixel, self.sample, dimension)
+        return uniform(self.tracer.scene.settings.seed, self.pixel, self.sample, dimension)
 
     def trace(
         self,
@@ -262,9 +278,13 @@ class Launch:
         initial: float = 0.0,
     ) -> F32:
         """Send primary rays; see :meth:`Hits.trace`. float32 (n, 3) arrays, unit directions."""
+        local = np.asarray(origin, np.float32)
+        centre = self.tracer.scene.geometry.centre
+        if centre.any():
+            local = (np.asarray(origin, np.float64) - centre).astype(np.float32)
         rays = Rays(
             self.tracer,
-            np.asarray(origin, np.float32),
+            local,
             np.asarray(direction, np.float32),
             self.pixel,
             self.sample,

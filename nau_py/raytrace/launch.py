@@ -11,43 +11,84 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from nau_py.raytrace.builtin import THIN_LENS
 from nau_py.raytrace.camera import CameraRays
 from nau_py.raytrace.hits import Launch
+from nau_py.raytrace.kernels import launch as kernel
+from nau_py.raytrace.kernels import tables as t
 from nau_py.raytrace.programs import BoundProgram
-from nau_py.raytrace.tracer import RayCounts, Scene, Tracer
+from nau_py.raytrace.scene import Scene
+from nau_py.raytrace.tracer import RayCounts, Tracer
 from nau_py.raytrace.vectors import F32
+from nau_py.scene.mesh import F64
+
+I64 = NDArray[np.int64]
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class LaunchSettings:
-    """``samples`` a pixel, ``threads`` (0: one a core), rays a ``tile``."""
+    """``samples`` a pixel, ``threads`` (0: one a core), rays a ``tile``, where samples lie."""
 
     samples: int
     threads: int = 0
     tile: int = 16384
+    sampler: str = "SOBOL"
+
+
+@dataclass(slots=True)
+class Estimate:
+    """Running means of n pixels: ``mean`` RGBA float64 (n, 4), ``squares`` float64 (n, 3) sums of
+    squared deviations, ``number`` int64 (n,) of finite samples, ``taken`` of all."""
+
+    mean: F64
+    squares: F64
+    number: I64
+    taken: I64
+
+    @classmethod
+    def empty(cls, count: int) -> Estimate:
+        return cls(
+            np.zeros((count, 4)),
+            np.zeros((count, 3)),
+            np.zeros(count, np.int64),
+            np.zeros(count, np.int64),
+        )
+
+    @property
+    def error(self) -> F64:
+        """Estimated standard error of each pixel's colour, root mean square over RGB, float64
+        (n,); infinite below two samples."""
+        n = self.number.astype(np.float64)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            variance = (self.squares[:, 0] + self.squares[:, 1] + self.squares[:, 2]) / 3
+            found = np.sqrt(variance / (n - 1) / n)
+        return np.where(n > 1, found, np.inf)
 
 
 @dataclass(slots=True)
 class LaunchResult:
-    """Colours RGBA float32 (n, 4) of the n selected pixels, and the cost.
+    """The estimates of the selected pixels, and the cost."""
 
-    ``est_error``: estimated root mean square error of the colours, from the sample variance;
-    None with one sample a pixel.
-    """
-
-    colours: F32
+    estimate: Estimate
     counts: RayCounts = field(default_factory=RayCounts)
-    est_error: float | None = None
+
+    @property
+    def colours(self) -> F32:
+        """RGBA float32 (n, 4)."""
+        return self.estimate.mean.astype(np.float32)
+
+    @property
+    def est_error(self) -> float | None:
+        """Estimated root mean square error of the colours, from the sample variance; None with
+        one sample a pixel."""
+        error = self.estimate.error
+        known = np.isfinite(error)
+        if not known.any():
+            return None
+        return float(np.sqrt(np.sum(error[known] ** 2) / known.sum()))
 
 
-@dataclass(slots=True)
-class _Tile:
-    colours: F32
-    counts: RayCounts
-    variance: NDArray[np.float64]
-
-
-def select(mask: NDArray[Any] | None, width: int, height: int) -> NDArray[np.int64]:
+def select(mask: NDArray[Any] | None, width: int, height: int) -> I64:
     """Flat indices (row · width + column, row 0 at the bottom) of the pixels to trace.
 
     ``mask`` (height, width): pixels with a weight above 0; None selects all.
@@ -55,25 +96,6 @@ def select(mask: NDArray[Any] | None, width: int, height: int) -> NDArray[np.int
     if mask is None:
         return np.arange(width * height)
     return np.flatnonzero(mask.reshape(-1) > 0)
-
-
-def _average(samples: F32, valid: NDArray[np.bool_]) -> tuple[F32, NDArray[np.float64]]:
-    """Means of (n, s, 4) over s; variance of the colour mean of each, (n,), summed over RGB.
-
-    Accumulates in float64 sample by sample, so that the result does not depend on n.
-    """
-    count = samples.shape[1]
-    total = np.zeros((len(samples), 4))
-    squares = np.zeros((len(samples), 3))
-    for index in range(count):
-        value = np.where(valid[:, index, None], samples[:, index], 0).astype(np.float64)
-        total += value
-        squares += value[:, :3] ** 2
-    kept = np.maximum(valid.sum(axis=1), 1)[:, None]
-    mean = total / kept
-    spread = np.maximum(squares / kept - mean[:, :3] ** 2, 0)
-    many = np.where(kept > 1, spread / np.maximum(kept - 1, 1), 0)
-    return mean.astype(np.float32), many[:, 0] + many[:, 1] + many[:, 2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,57 +106,121 @@ class Work:
     generate: BoundProgram
     exception: BoundProgram | None
     width: int
+    camera: NDArray[Any]
     rays: CameraRays
     settings: LaunchSettings
+    label: str = "the pass"
 
-    def tile(self, chosen: NDArray[np.int64]) -> _Tile:
-        """Trace all samples of the pixels ``chosen``."""
-        samples = self.settings.samples
-        flat = np.repeat(chosen, samples)
+    def tile(self, items: NDArray[Any], estimate: Estimate, part: slice) -> RayCounts:
+        """Trace the samples ``items`` and add them to ``part`` of ``estimate``."""
         tracer = Tracer(self.scene)
-        launch = Launch(
+        total = int(items["count"].sum())
+        radiance = np.zeros((total, 4), np.float32)
+        with np.errstate(all="ignore"):  # what is not finite is counted, not printed
+            launch = None
+            if self.generate.code == t.USER:
+                launch = self._launch(tracer, items)
+                radiance = self.generate.radiance(launch, total)
+            else:
+                self._compiled(tracer, items, radiance)
+            if self.exception is not None and not np.isfinite(radiance).all():
+                bad = ~np.isfinite(radiance).all(axis=1)
+                launch = launch or self._launch(tracer, items)
+                first = int(launch.pixel[np.argmax(bad)])
+                tracer.dropped(self.label, int(bad.sum()), first)
+                radiance[bad] = self.exception.radiance(launch, total)[bad]
+        bad_samples = np.zeros(2, np.int64)
+        kernel.accumulate(
+            radiance,
+            items,
+            estimate.mean[part],
+            estimate.squares[part],
+            estimate.number[part],
+            bad_samples,
+        )
+        tracer.dropped(self.label, int(bad_samples[0]), int(bad_samples[1]))
+        return tracer.counts
+
+    def _rule(self) -> int:
+        if self.settings.samples == 1 and self.settings.sampler != "RANDOM":
+            return kernel.CENTRE
+        if self.settings.sampler == "STRATIFIED":
+            side = round(self.settings.samples**0.5)
+            return kernel.STRATA if side * side == self.settings.samples else kernel.JITTER
+        return kernel.JITTER if self.settings.sampler == "RANDOM" else kernel.SOBOL
+
+    def _compiled(self, tracer: Tracer, items: NDArray[Any], radiance: F32) -> None:
+        queue = np.empty(len(radiance), t.PATH)
+        kernel.generate(
+            self.camera,
+            int(self.generate.code == THIN_LENS),
+            self._rule(),
+            max(round(self.settings.samples**0.5), 1),
+            np.uint32(self.scene.settings.seed & 0xFFFFFFFF),
+            self.width,
+            items,
+            queue,
+        )
+        tracer.follow(queue, 0, radiance)
+
+    def _launch(self, tracer: Tracer, items: NDArray[Any]) -> Launch:
+        """The samples as a program of the project sees them."""
+        flat = np.repeat(items["pixel"], items["count"])
+        starts = np.repeat(np.cumsum(items["count"]) - items["count"], items["count"])
+        sample = np.arange(len(flat)) - starts + np.repeat(items["first"], items["count"])
+        return Launch(
             tracer,
             (flat % self.width).astype(np.int32),
             (flat // self.width).astype(np.int32),
             flat.astype(np.uint32),
-            np.tile(np.arange(samples, dtype=np.uint32), len(chosen)),
-            samples,
+            sample.astype(np.uint32),
+            self.settings.samples,
             self.rays,
         )
-        with np.errstate(all="ignore"):  # what is not finite is counted, not printed
-            colours = self.generate.radiance(launch, len(flat))
-            valid = np.asarray(np.isfinite(colours).all(axis=1))
-            if not valid.all():
-                tracer.counts.nonfinite += int((~valid).sum())
-                if self.exception is not None:
-                    colours[~valid] = self.exception.radiance(launch, len(flat))[~valid]
-                    valid[:] = True
-        shape = (len(chosen), samples)
-        mean, variance = _average(colours.reshape(*shape, 4), valid.reshape(shape))
-        return _Tile(mean, tracer.counts, variance)
+
+
+Progress = Callable[[int, int], None]
 
 
 def run_launch(
-    work: Work, pixels: NDArray[np.int64], progress: Callable[[int, int], None]
+    work: Work,
+    pixels: I64,
+    progress: Progress,
+    samples: NDArray[np.integer[Any]] | None = None,
+    result: LaunchResult | None = None,
 ) -> LaunchResult:
-    """Run ray generation for every sample of ``pixels``, in tiles over threads.
+    """Take samples of ``pixels``, in tiles over threads.
 
-    A sample that is not finite is replaced by what the exception program says, or dropped, and
-    counted. The colours are the same to the bit for any tile size and number of threads.
+    ``samples`` (n,): how many of each, the settings' number by default; ``result``: what earlier
+    launches found, to be added to. A sample that is not finite is replaced by what the exception
+    program says, or dropped, and counted. The colours are the same to the bit for any tile size
+    and number of threads.
     """
     settings = work.settings
-    step = max(settings.tile // settings.samples, 1)
-    starts = range(0, len(pixels), step)
-    result = LaunchResult(np.zeros((len(pixels), 4), np.float32))
-    variance = np.zeros(len(pixels))
+    found = result or LaunchResult(Estimate.empty(len(pixels)))
+    items = np.zeros(len(pixels), kernel.ITEM)
+    items["pixel"] = pixels
+    items["first"] = found.estimate.taken
+    items["count"] = settings.samples if samples is None else samples
+    found.estimate.taken += items["count"]
+    parts = _parts(items["count"], settings.tile)
     threads = settings.threads or os.cpu_count() or 1
     with ThreadPoolExecutor(max_workers=threads) as pool:
-        tiles = pool.map(lambda start: work.tile(pixels[start : start + step]), starts)
-        for start, tile in zip(starts, tiles):
-            result.colours[start : start + step] = tile.colours
-            result.counts.merge(tile.counts)
-            variance[start : start + step] = tile.variance
-            progress(min(start + step, len(pixels)), len(pixels))
-    if settings.samples > 1 and len(pixels):
-        result.est_error = float(np.sqrt(variance.sum() / (3 * len(pixels))))
-    return result
+        tiles = pool.map(lambda p: work.tile(items[p], found.estimate, p), parts)
+        for part, counts in zip(parts, tiles):
+            found.counts.merge(counts)
+            progress(part.stop, len(pixels))
+    return found
+
+
+def _parts(counts: NDArray[np.int32], tile: int) -> list[slice]:
+    """Runs of whole pixels with about ``tile`` samples each."""
+    ends = np.cumsum(counts, dtype=np.int64)
+    parts: list[slice] = []
+    start = 0
+    while start < len(counts):
+        before = int(ends[start - 1]) if start else 0
+        stop = max(int(np.searchsorted(ends, before + tile, side="right")), start + 1)
+        parts.append(slice(start, stop))
+        start = stop
+    return parts

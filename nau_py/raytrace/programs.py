@@ -16,9 +16,9 @@ import numpy as np
 
 from nau_py.diagnostic import error, listing, nearest
 from nau_py.errors import NauError, ProgramError
-from nau_py.model.builtins import BUILTIN_PROGRAMS
 from nau_py.model.location import Location
 from nau_py.model.raytrace import BUILTIN, Program
+from nau_py.raytrace.kernels.tables import USER
 from nau_py.raytrace.vectors import F32, Mask
 
 
@@ -30,6 +30,8 @@ class BoundProgram:
     label: str
     location: Location
     file: str
+    code: int = USER
+    """What compiled kernels call the program by; USER: it is Python."""
 
     def call(self, argument: object) -> Any:
         """Run the program. Raises :class:`~nau_py.errors.ProgramError` for what it raises."""
@@ -90,6 +92,11 @@ class BoundProgram:
         return array
 
 
+def _compiled(argument: object) -> object:
+    """Stands for a kernel where a Python function is asked for; the engine never calls it."""
+    raise NotImplementedError("a compiled program is run by its code")
+
+
 @dataclass(frozen=True, slots=True)
 class TrustRule:
     """Which folders programs may be loaded from."""
@@ -119,20 +126,21 @@ class ProgramLoader:
         self._trust = trust
         self._modules: dict[Path, ModuleType] = {}
 
-    def load(self, program: Program, label: str) -> BoundProgram:
-        """The callable behind a ``file`` and ``proc``. Raises :class:`ProgramError`."""
+    def load(self, program: Program, label: str, kind: str) -> BoundProgram:
+        """The program behind a ``file`` and ``proc``. Raises :class:`ProgramError`."""
         from nau_py.model.program_source import stand_in, strip_decoration
-        from nau_py.raytrace.builtin import FUNCTIONS
+        from nau_py.raytrace.builtin import CODES, FUNCTIONS
 
         proc = program.proc or ""
         if program.file == BUILTIN:
-            function = FUNCTIONS.get(proc)
-            if function is None:
-                known = list(BUILTIN_PROGRAMS)
+            codes, functions = CODES.get(kind, {}), FUNCTIONS.get(kind, {})
+            known = [*codes, *functions]
+            if proc not in known:
                 message = f"{label}: there is no built-in '{proc}'; there is {listing(known)}"
                 message += nearest(proc, known)
                 raise ProgramError(error("T006", program.where("proc"), message))
-            return BoundProgram(function, label, program.location, "")
+            code = codes.get(proc, USER)
+            return BoundProgram(functions.get(proc, _compiled), label, program.location, "", code)
         path = stand_in(self._folder, program.file or "")
         if path is None:
             message = f"{label}: no Python file stands in for '{program.file}'"

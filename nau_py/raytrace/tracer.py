@@ -1,4 +1,4 @@
-"""The wavefront: a batch of rays is traced, its hits are grouped by material, programs run."""
+"""The wavefront: kernels follow a batch of rays, and Python programs answer what they ask."""
 
 from __future__ import annotations
 
@@ -9,60 +9,47 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
-from nau_py.raytrace.accel import NO_HIT, Accelerator, Intersections
-from nau_py.raytrace.geometry import RayGeometry
-from nau_py.raytrace.hits import Hits, RayLight, RayMaterial, Rays
+from nau_py.raytrace.hits import Hits, Rays
+from nau_py.raytrace.kernels import batch
+from nau_py.raytrace.kernels import tables as t
+from nau_py.raytrace.kernels.advance import advance
+from nau_py.raytrace.kernels.embree import RAY_FLOATS
+from nau_py.raytrace.kernels.launch import enqueue
 from nau_py.raytrace.programs import BoundProgram
-from nau_py.raytrace.spawn import spawn
+from nau_py.raytrace.scene import Scene
 from nau_py.raytrace.vectors import F32
 
-MAX_LAYERS = 256
-"""Ignored hits that one ray may pass through; reaching it is reported, never silent."""
 RECURSION_LIMIT = 64
+MIN_QUEUE = 1024
+_CODES = {name: code for code, name in enumerate(t.KINDS)}
 
 
 @dataclass(slots=True)
 class RayCounts:
-    """What one tile of work cost."""
+    """What one tile of work cost. ``sources``: for each program or pass that gave a value that is
+    not finite, how many and the first pixel."""
 
     rays: dict[str, int] = field(default_factory=dict)
     nonfinite: int = 0
     cut_layers: int = 0
+    sources: dict[str, tuple[int, int]] = field(default_factory=dict)
 
     def add(self, kind: str, count: int) -> None:
         if count:
             self.rays[kind] = self.rays.get(kind, 0) + count
 
+    def blame(self, source: str, count: int, pixel: int) -> None:
+        if count:
+            before, first = self.sources.get(source, (0, pixel))
+            self.sources[source] = (before + count, min(first, pixel))
+
     def merge(self, other: RayCounts) -> None:
         for kind, count in other.rays.items():
             self.add(kind, count)
+        for source, (count, pixel) in other.sources.items():
+            self.blame(source, count, pixel)
         self.nonfinite += other.nonfinite
         self.cut_layers += other.cut_layers
-
-
-ProgramTable = dict[tuple[str, str], list[BoundProgram | None]]
-"""(ray type, kind) to a program for each material; a MISS has one entry."""
-
-
-@dataclass(slots=True)
-class Scene:
-    """What does not change between the tiles of a launch."""
-
-    geometry: RayGeometry
-    accelerator: Accelerator
-    materials: list[RayMaterial]
-    programs: ProgramTable
-    lights: list[RayLight]
-    variables: dict[str, NDArray[Any]]
-    inputs: dict[str, NDArray[Any]]
-    ray_types: list[str]
-    max_depth: int
-    seed: int
-    clear_color: F32
-
-    def is_visibility(self, ray_type: str) -> bool:
-        """Whether no material has a closest-hit program: such rays ask only what is in the way."""
-        return not any(self.programs.get((ray_type, CLOSEST_HIT), []))
 
 
 class Tracer:
@@ -70,138 +57,162 @@ class Tracer:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self.counts = RayCounts()
-        self.geometry = scene.geometry
-        self.lights = scene.lights
-        self.variables = scene.variables
-        self.inputs = scene.inputs
-        self.ray_types = scene.ray_types
-        self.seed = scene.seed
-        self.clear_color = scene.clear_color
+        self._counters = np.zeros(t.COUNTERS, np.int64)
+        self._named: dict[str, int] = {}
+        self._rest = RayCounts()
+        self._stack = np.zeros(t.STACK + 1, t.PATH)
+        self._ray = np.zeros(RAY_FLOATS + 4, np.float32)
+        self._queues: list[NDArray[Any]] = []
+
+    @property
+    def counts(self) -> RayCounts:
+        """The cost so far."""
+        found = RayCounts(sources=dict(self._rest.sources))
+        for name, code in _CODES.items():
+            found.add(name, int(self._counters[code]))
+        for name, count in self._named.items():
+            found.add(name, count)
+        found.nonfinite = self._rest.nonfinite + int(self._counters[t.NONFINITE])
+        found.cut_layers = int(self._counters[t.CUT])
+        return found
+
+    def dropped(self, source: str, count: int, pixel: int) -> None:
+        """Note ``count`` samples that are not finite."""
+        self._rest.nonfinite += count
+        self._rest.blame(source, count, pixel)
 
     def trace(self, rays: Rays, tmax: F32 | None, kind: str | None, initial: float) -> F32:
         """What a batch of rays brings, RGBA float32 (n, 4)."""
-        if rays.ray_type not in self.ray_types:
-            known = ", ".join(self.ray_types)
-            raise ValueError(f"ray type '{rays.ray_type}' is not one of the pass: {known}")
+        types = self.scene.ray_types
+        if rays.ray_type not in types:
+            raise ValueError(
+                f"ray type '{rays.ray_type}' is not one of the pass: {', '.join(types)}"
+            )
         result = np.zeros((len(rays), 4), np.float32)
-        visibility = self.scene.is_visibility(rays.ray_type)
-        if rays.depth > RECURSION_LIMIT or (rays.depth > self.scene.max_depth and not visibility):
+        if rays.depth > RECURSION_LIMIT:
             return result
-        finite = np.isfinite(rays.origin).all(axis=1) & np.isfinite(rays.direction).all(axis=1)
-        finite &= (rays.direction != 0).any(axis=1)
-        if not finite.all():
-            self.counts.nonfinite += int((~finite).sum())
-        chosen = np.flatnonzero(finite)
-        self.counts.add(kind or rays.ray_type, len(chosen))
-        part = _take(rays, chosen)
-        limit = None if tmax is None else np.asarray(tmax, np.float32)[chosen]
-        any_hit = self._any_hit(rays.ray_type)
-        miss = self.scene.programs.get((rays.ray_type, MISS), [None])[0]
-        if visibility and not any(any_hit):
-            blocked = self.scene.accelerator.occluded(part.origin, part.direction, limit)
-        else:
-            found = self._nearest(part, limit, any_hit)
-            blocked = found.triangle != NO_HIT
-            if not visibility:
-                self._shade(part, found, chosen, result)
-        missed = np.flatnonzero(~blocked)
-        if miss is not None and len(missed):
-            result[chosen[missed]] = miss.radiance(_take(part, missed), len(missed))
-        elif initial:
-            result[chosen[missed]] = np.float32(initial)
+        limit = np.array([np.inf] if tmax is None else tmax, np.float32)
+        name = kind or rays.ray_type
+        code = _CODES.get(name, t.OTHER)
+        queue = self._borrow(len(rays))[: len(rays)]
+        origin, direction = (
+            np.ascontiguousarray(a, np.float32) for a in (rays.origin, rays.direction)
+        )
+        enqueue(
+            origin, direction, limit, rays.pixel, rays.sample, rays.depth, code, initial, queue
+        )  # fmt: skip
+        before = int(self._counters[t.OTHER])
+        self.follow(queue, types.index(rays.ray_type), result, name)
+        if code == t.OTHER:
+            count = int(self._counters[t.OTHER]) - before
+            self._counters[t.OTHER] = before
+            self._named[name] = self._named.get(name, 0) + count
+        self._return(queue)
         return result
 
-    def _any_hit(self, ray_type: str) -> list[BoundProgram | None]:
-        return self.scene.programs.get((ray_type, ANY_HIT), [])
+    def _borrow(self, size: int) -> NDArray[Any]:
+        for index, queue in enumerate(self._queues):
+            if len(queue) >= size:
+                return self._queues.pop(index)
+        return np.empty(max(size, MIN_QUEUE), t.PATH)
 
-    def _nearest(
-        self, rays: Rays, tmax: F32 | None, any_hit: list[BoundProgram | None]
-    ) -> Intersections:
-        """Nearest accepted hits: ignored ones are passed through, layer by layer."""
-        found = self.scene.accelerator.intersect(rays.origin, rays.direction, tmax)
-        if not any(any_hit):
-            return found
-        travelled = np.zeros(len(rays), np.float32)
-        pending = np.flatnonzero(found.triangle != NO_HIT)
-        tests = np.array([program is not None for program in any_hit])
-        for _ in range(MAX_LAYERS):
-            pending = pending[tests[self.geometry.material[found.triangle[pending]]]]
-            ignored = self._ignored(rays, found, pending, any_hit)
-            if not len(ignored):
-                return found
-            hits = self._hits(_take(rays, ignored), found, ignored, 0)
-            position, normal, bound = hits._surface
-            origin = spawn(position, normal, bound, rays.direction[ignored])
-            travelled[ignored] += found.t[ignored]
-            limit = None if tmax is None else np.maximum(tmax[ignored] - travelled[ignored], 0)
-            again = self.scene.accelerator.intersect(origin, rays.direction[ignored], limit)
-            self.counts.add("continuation", len(ignored))
-            found.triangle[ignored], found.t[ignored] = again.triangle, again.t
-            found.u[ignored], found.v[ignored] = again.u, again.v
-            pending = ignored[again.triangle != NO_HIT]
-        self.counts.cut_layers += len(pending)
-        return found
+    def _return(self, queue: NDArray[Any]) -> None:
+        self._queues.append(queue if queue.base is None else queue.base)
 
-    def _ignored(
-        self,
-        rays: Rays,
-        found: Intersections,
-        pending: NDArray[np.int64],
-        any_hit: list[BoundProgram | None],
-    ) -> NDArray[np.int64]:
-        """Which of the ``pending`` hits their any-hit programs ignore."""
-        ignored = []
-        for index, chosen in self._by_material(found, pending):
-            program = any_hit[index]
+    def follow(
+        self, queue: NDArray[Any], ray_type: int, radiance: F32, name: str = "primary"
+    ) -> None:
+        """Follow the paths of ``queue`` to their ends; add what they bring to ``radiance``."""
+        tile = np.zeros(1, t.TILE)
+        tile["ray"] = -(-self._ray.ctypes.data // 16) * 16  # Embree wants 16-byte alignment
+        tile["counts"], tile["stack"] = self._counters.ctypes.data, self._stack.ctypes.data
+        tile["radiance"] = radiance.ctypes.data
+        deferred = self._borrow(len(queue) + 1)
+        current = np.zeros(1, t.PATH)
+        while tile["next"][0] < len(queue):
+            tile["waiting"], tile["deferred"] = 0, deferred.ctypes.data
+            tile["capacity"] = len(deferred) - 1
+            advance(self.scene.tables.record, ray_type, queue, tile, current)
+            waiting = int(tile["waiting"][0])
+            if waiting:
+                again = self._answer(deferred[:waiting], ray_type, radiance, name)
+                if len(again):
+                    self.follow(again, ray_type, radiance, name)
+            elif tile["next"][0] < len(queue):  # one path asks more than the queue holds
+                deferred = np.empty(2 * len(deferred), t.PATH)
+        self._return(deferred)
+
+    def _answer(self, paths: NDArray[Any], ray_type: int, radiance: F32, name: str) -> NDArray[Any]:
+        """Run the programs that ``paths`` wait for, by material; the paths that go on."""
+        materials = max(len(self.scene.materials), 1)
+        depths = RECURSION_LIMIT + 2
+        keys = np.empty(len(paths), np.int32)
+        tables = self.scene.tables
+        batch.group_keys(paths, tables.arrays["owner"], materials, depths, keys)
+        order = np.empty(len(paths), np.int64)
+        starts = np.empty(t.OCCLUSION * depths * materials + depths * materials + 1, np.int64)
+        batch.sort_by(keys, len(starts) - 1, order, starts)
+        going: list[NDArray[Any]] = []
+        for key in np.flatnonzero(np.diff(starts)):
+            group = paths[order[starts[key] : starts[key + 1]]]
+            status, material = int(key) // (depths * materials), int(key) % materials
+            if status == t.CANDIDATE:
+                going += self._candidates(group, ray_type, material)
+                continue
+            if status == t.HIT:
+                program = self.scene.program(self._type(ray_type), CLOSEST_HIT, material)
+                hits = self._hits(group, ray_type, material)
+                values = self._radiance(program, hits, group)
+            elif status == t.MISSED:
+                program = self.scene.program(self._type(ray_type), MISS, 0)
+                values = self._radiance(program, self._rays(group, ray_type), group)
+            else:
+                values = self._visibility(group, ray_type)
+                program = None
+            bad = np.zeros(2, np.int64)
+            batch.scatter(radiance, group, values, status == t.OCCLUSION, bad)
             if program is not None:
-                hits = self._hits(_take(rays, chosen), found, chosen, index)
-                ignored.append(chosen[~program.accepts(hits, len(chosen))])
-        return np.sort(np.concatenate(ignored)) if ignored else np.zeros(0, np.int64)
+                self._rest.blame(program.label, int(bad[0]), int(bad[1]))
+        return np.concatenate(going) if going else paths[:0]
 
-    def _by_material(
-        self, found: Intersections, chosen: NDArray[np.int64]
-    ) -> list[tuple[int, NDArray[np.int64]]]:
-        material = self.geometry.material[found.triangle[chosen]]
-        order = np.argsort(material, kind="stable")
-        indices, starts = np.unique(material[order], return_index=True)
-        parts = np.split(chosen[order], starts[1:])
-        return [(int(index), part) for index, part in zip(indices, parts)]
+    def _type(self, ray_type: int) -> str:
+        return self.scene.ray_types[ray_type]
 
-    def _hits(
-        self, rays: Rays, found: Intersections, chosen: NDArray[np.int64], material: int
-    ) -> Hits:
-        return Hits(
-            rays,
-            found.triangle[chosen],
-            found.u[chosen],
-            found.v[chosen],
-            found.t[chosen],
-            self.scene.materials[material],
+    def _rays(self, paths: NDArray[Any], ray_type: int) -> Rays:
+        return Rays(
+            self,
+            np.ascontiguousarray(paths["origin"]),
+            np.ascontiguousarray(paths["direction"]),
+            np.ascontiguousarray(paths["pixel"]),
+            np.ascontiguousarray(paths["sample"]),
+            int(paths["depth"][0]),
+            self._type(ray_type),
         )
 
-    def _shade(
-        self, rays: Rays, found: Intersections, chosen: NDArray[np.int64], result: F32
-    ) -> None:
-        programs = self.scene.programs.get((rays.ray_type, CLOSEST_HIT), [])
-        hit = np.flatnonzero(found.triangle != NO_HIT)
-        for index, part in self._by_material(found, hit):
-            program = programs[index]
-            if program is not None:
-                hits = self._hits(_take(rays, part), found, part, index)
-                result[chosen[part]] = program.radiance(hits, len(part))
+    def _hits(self, paths: NDArray[Any], ray_type: int, material: int) -> Hits:
+        columns = (np.ascontiguousarray(paths[k]) for k in ("triangle", "u", "v", "t"))
+        triangle, u, v, distance = columns
+        rays = self._rays(paths, ray_type)
+        return Hits(rays, triangle, u, v, distance, self.scene.materials[material])
 
+    def _radiance(self, program: BoundProgram | None, argument: object, paths: NDArray[Any]) -> F32:
+        assert program is not None
+        return program.radiance(argument, len(paths))
 
-def _take(rays: Rays, chosen: NDArray[np.int64]) -> Rays:
-    """The rays at ``chosen``."""
-    if len(chosen) == len(rays):
-        return rays
-    return Rays(
-        rays.tracer,
-        rays.origin[chosen],
-        rays.direction[chosen],
-        rays.pixel[chosen],
-        rays.sample[chosen],
-        rays.depth,
-        rays.ray_type,
-    )
+    def _candidates(self, paths: NDArray[Any], ray_type: int, material: int) -> list[NDArray[Any]]:
+        """Ask the any-hit program; accepted hits are shaded, ignored ones passed through."""
+        program = self.scene.program(self._type(ray_type), ANY_HIT, material)
+        assert program is not None
+        accepted = program.accepts(self._hits(paths, ray_type, material), len(paths))
+        kept, ignored = paths[accepted], paths[~accepted]
+        kept["status"] = t.SHADE
+        batch.pass_all(self.scene.tables.record, ignored)
+        closest = self.scene.tables.arrays["closest"][ray_type, material] != 0
+        return [kept, ignored] if closest else [ignored]
+
+    def _visibility(self, paths: NDArray[Any], ray_type: int) -> F32:
+        """What a light's shadow rays bring: red is the visibility."""
+        shadow = int(self.scene.tables.record["shadow_type"][0])
+        rays = self._rays(paths, shadow if shadow >= 0 else ray_type)
+        rays.depth += 1
+        return self.trace(rays, np.ascontiguousarray(paths["tmax"]), "shadow", 0.0)

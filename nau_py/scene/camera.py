@@ -99,11 +99,14 @@ class CameraState:
 
 
 _PROJECTION = ("FOV", "NEAR", "FAR", "LEFT", "RIGHT", "TOP", "BOTTOM")
+_LENS = ("APERTURE", "FOCUS_DISTANCE")
 
 
 def camera_state(project: Project, camera: Camera | None, name: str) -> CameraState:
     """The state of ``camera`` after its tags, in file order, then its projection."""
-    defaults = {key: float(project.registry["CAMERA"].default(key)[0]) for key in _PROJECTION}
+    defaults = {
+        key: float(project.registry["CAMERA"].default(key)[0]) for key in (*_PROJECTION, *_LENS)
+    }
     state = CameraState(name, values=defaults)
     if camera is None:
         return state

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from nau_py.model.attributes.color import COLOR
+
 QUAD_MATERIAL = "__Quad"
 """The material of a quad pass that names none."""
 OBJ_MATERIAL = "DefaultOBJMaterial"
@@ -13,11 +15,7 @@ PRIMITIVE_MATERIAL = "__Light Grey"
 """The material of built-in primitives that name none."""
 
 DEFAULT_COLOURS: dict[str, tuple[float, ...]] = {
-    "AMBIENT": (0.2, 0.2, 0.2, 1.0),
-    "DIFFUSE": (0.8, 0.8, 0.8, 1.0),
-    "SPECULAR": (0.0, 0.0, 0.0, 1.0),
-    "EMISSION": (0.0, 0.0, 0.0, 1.0),
-    "SHININESS": (0.0,),
+    a.name: tuple(float(v) for v in a.default) for a in COLOR
 }
 
 

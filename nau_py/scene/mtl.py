@@ -41,8 +41,11 @@ def _mtl_line(material: ModelMaterial, words: list[str], folder: Path) -> None:
         material.colours[_COLOURS[keyword]] = (r, g, b, 1.0)
     elif keyword == "Ns":
         material.colours["SHININESS"] = (float(words[1]) * 128.0 / 1000.0,)
+    elif keyword == "Ni":
+        material.colours["INDEX_OF_REFRACTION"] = (float(words[1]),)
     elif keyword == "Pr":
         roughness = max(float(words[1]), 1e-4)
+        material.colours["ROUGHNESS"] = (min(max(float(words[1]), 0.0), 1.0),)
         material.colours["SHININESS"] = (2.0 / roughness**2 - 2.0,)
     elif (keyword.startswith(("map_", "b"))) and len(words) > 1:
         unit = _BUMP if keyword.startswith("b") else _MAPS.get(keyword, _OTHER_MAP)

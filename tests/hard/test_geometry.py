@@ -8,8 +8,9 @@ import pytest
 import nau_py
 from nau_py.raytrace.accel import Accelerator
 from nau_py.raytrace.geometry import RayGeometry
-from nau_py.raytrace.spawn import spawn, surface_point
-from nau_py.raytrace.vectors import F32, normalize
+from nau_py.raytrace.kernels.batch import departures, surface_points
+from nau_py.raytrace.kernels.tables import SCENE
+from nau_py.raytrace.vectors import F32
 from tests.conftest import LAMBERT, Folder, RayProject
 
 RAYS = 100_000
@@ -21,25 +22,41 @@ def geometry(vertices: np.ndarray, triangles: list[list[int]]) -> RayGeometry:  
         np.array(triangles, np.int32),
         np.zeros(len(triangles), np.int32),
         ["m"],
-        None,
-        None,
-        None,
     )
+
+
+def surface(
+    made: RayGeometry,
+    triangle: np.ndarray,
+    u: F32,
+    v: F32,  # type: ignore[type-arg]
+) -> tuple[F32, F32, F32]:
+    """Positions, face normals and error bounds at barycentrics."""
+    record = np.zeros(1, SCENE)
+    record["vertices"], record["triangles"] = made.vertices.ctypes.data, made.triangles.ctypes.data
+    position, normal = np.empty((2, len(u), 3), np.float32)
+    bound = np.empty(len(u), np.float32)
+    surface_points(record, triangle.astype(np.int32), u, v, position, normal, bound)
+    return position, normal, bound
+
+
+def normalize(v: np.ndarray) -> np.ndarray:  # type: ignore[type-arg]
+    return np.asarray(v / np.linalg.norm(v, axis=1, keepdims=True))
 
 
 def self_hits(made: RayGeometry, seed: int) -> tuple[int, F32]:
     """Rays that leave random points of random triangles and meet the same plane again; offsets."""
     rng = np.random.default_rng(seed)
     chosen = rng.integers(0, len(made.triangles), RAYS)
-    v0, v1, v2 = (made.vertices[made.triangles[chosen, k]] for k in range(3))
     u, v = rng.random((2, RAYS)).astype(np.float32)
     over = u + v > 1
     u, v = np.where(over, 1 - u, u), np.where(over, 1 - v, v)
-    position, normal, bound = surface_point(v0, v1, v2, u, v)
+    position, normal, bound = surface(made, chosen, u, v)
     direction = normalize(rng.standard_normal((RAYS, 3))).astype(np.float32)
     side = np.sign((direction * normal).sum(axis=1))
     direction *= np.where(side == 0, 1, side)[:, None]
-    origin = spawn(position, normal, bound, direction)
+    origin, unit = np.empty((2, RAYS, 3), np.float32)
+    departures(position, normal, bound, direction, origin, unit)
     hits = Accelerator(made).intersect(origin, direction).triangle >= 0
     return int(hits.sum()), np.linalg.norm(origin - position, axis=1).astype(np.float32)
 
@@ -95,9 +112,8 @@ def test_sliver() -> None:
             [-1113.45459, -79.2090149, -56.2431908],
         ]
     )
-    v = vertices.astype(np.float32).reshape(2, 3, 3)
     u = np.full(2, 0.3, np.float32)
-    values = surface_point(v[:, 0], v[:, 1], v[:, 2], u, u)
+    values = surface(geometry(vertices, [[0, 1, 2], [3, 4, 5]]), np.arange(2), u, u)
     assert all(np.isfinite(a).all() for a in values)
 
 
@@ -160,7 +176,9 @@ def test_alpha_stack_100(folder: Folder, ray_project: RayProject) -> None:
 
 def test_mirror_corridor(folder: Folder, ray_project: RayProject) -> None:
     """Between two mirrors of reflectance 0.9 the depth limit gives 0, one light gives 0.9^n."""
-    folder.mtl("scene", {"Front": {"Ks": "0.9 0.9 0.9"}, "Back": {"Ke": "1 1 1"}})
+    folder.mtl(
+        "scene", {"Front": {"Ks": "0.9 0.9 0.9"}, "Back": {"Ke": "1 1 1", "Ks": "0.9 0.9 0.9"}}
+    )
     folder.obj(
         "scene",
         [

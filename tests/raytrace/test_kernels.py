@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nau_py.raytrace.random import pcg4d, stratified, uniform
+from nau_py.raytrace.kernels.launch import CAMERA, ITEM, SOBOL, STRATA, generate
+from nau_py.raytrace.kernels.sampling import pcg4d
+from nau_py.raytrace.kernels.tables import PATH
+from nau_py.raytrace.random import uniform
 from nau_py.raytrace.texture import RayTexture
 from tests.conftest import Folder
 
@@ -26,8 +29,14 @@ def test_pcg4d_against_its_definition_in_python_integers() -> None:
         return v[0]
 
     keys = np.random.default_rng(3).integers(0, 2**32, (50, 4), dtype=np.uint32)
-    found = pcg4d(*(keys[:, k].copy() for k in range(4)))
-    assert found.tolist() == [reference([int(k) for k in row]) for row in keys]
+    with np.errstate(over="ignore"):
+        found = [pcg4d.py_func(*row) for row in keys]  # type: ignore[attr-defined]
+    assert found == [reference([int(k) for k in row]) for row in keys]
+    # compiled, it is what random numbers are made of
+    pixel, sample = keys[:, 0].copy(), keys[:, 1].copy()
+    numbers = uniform(7, pixel, sample, 3)
+    expected = [(reference([int(p), int(s), 3, 7]) >> 8) / 2**24 for p, s in zip(pixel, sample)]
+    np.testing.assert_array_equal(numbers, np.float32(expected))
 
 
 def test_numbers_are_uniform_and_keyed() -> None:
@@ -46,13 +55,34 @@ def test_numbers_are_uniform_and_keyed() -> None:
     np.testing.assert_array_equal(uniform(0, pixel[500:600], sample[500:600], 0), values[500:600])
 
 
+def sample_points(rule: int, count: int, pixel: int = 123) -> np.ndarray:  # type: ignore[type-arg]
+    """Where the samples of a pixel lie inside it, float64 (count, 2)."""
+    camera = np.zeros(1, CAMERA)  # orthographic, one world unit a pixel
+    camera["forward"], camera["right"], camera["up"] = (0, 0, -1), (1, 0, 0), (0, 1, 0)
+    camera["high"] = camera["size"] = (1000, 1000)
+    camera["ortho"] = 1
+    items = np.zeros(1, ITEM)
+    items["pixel"], items["count"] = pixel, count
+    queue = np.zeros(count, PATH)
+    generate(camera, 0, rule, round(count**0.5), np.uint32(7), 1000, items, queue)
+    return np.asarray(queue["origin"][:, :2].astype(float) - [pixel, 0])
+
+
 @pytest.mark.parametrize("count", [4, 16, 64])
 def test_each_stratum_gets_one_sample(count: int) -> None:
-    sample = np.arange(count, dtype=np.uint32)
-    x, y = stratified(7, np.full(count, 123, np.uint32), sample, count, 0)
     side = round(count**0.5)
-    cells = set(zip((x * side).astype(int).tolist(), (y * side).astype(int).tolist()))
+    cells = {tuple(c) for c in (sample_points(STRATA, count) * side).astype(int).tolist()}
     assert len(cells) == count
+
+
+@pytest.mark.parametrize("count", [4, 16, 64, 256])
+def test_sobol_points_fill_every_elementary_interval(count: int) -> None:
+    """A (0, 2)-sequence: of its first 2^m points, one lies in each box of 2^-k by 2^-(m-k)."""
+    points = sample_points(SOBOL, count)
+    m = count.bit_length() - 1
+    for k in range(m + 1):
+        boxes = {tuple(b) for b in (points * [2**k, 2 ** (m - k)]).astype(int).tolist()}
+        assert len(boxes) == count
 
 
 @pytest.mark.parametrize("wrap", ["REPEAT", "CLAMP_TO_EDGE", "MIRRORED_REPEAT", "CLAMP_TO_BORDER"])

@@ -7,7 +7,7 @@ import pytest
 
 import nau_py
 from nau_py.model.builtins import BUILTIN_PROGRAMS
-from nau_py.raytrace.builtin import FUNCTIONS
+from nau_py.raytrace.builtin import CODES, FUNCTIONS
 from tests.conftest import Folder, RayProject
 
 USER = """\
@@ -34,7 +34,8 @@ def fails(project: nau_py.Project, **options: object) -> nau_py.Diagnostic:
 
 
 def test_the_listed_builtins_are_the_engines() -> None:
-    assert set(FUNCTIONS) == set(BUILTIN_PROGRAMS)
+    engine = {(n, k) for table in (CODES, FUNCTIONS) for k, names in table.items() for n in names}
+    assert engine == {(name, kind) for name, (kind, _) in BUILTIN_PROGRAMS.items()}
 
 
 @pytest.mark.parametrize(

@@ -38,6 +38,8 @@ CAMERA = AttributeSet.of(
         number("RIGHT", FLOAT, 1.0, "Right of the orthographic window, world units."),
         number("TOP", FLOAT, 1.0, "Top of the orthographic window, world units."),
         number("BOTTOM", FLOAT, -1.0, "Bottom of the orthographic window, world units."),
+        number("APERTURE", FLOAT, 0.0, "nau_py: radius of the lens of `thin_lens`, world units."),
+        number("FOCUS_DISTANCE", FLOAT, 10.0, "nau_py: where `thin_lens` is sharp, along VIEW."),
         choice("TYPE", "PERSPECTIVE", "PERSPECTIVE ORTHO", "Kind of projection."),
         number("ZX_ANGLE", FLOAT, pi, "Angle about the vertical, radians; replaces VIEW."),
         number("ELEVATION_ANGLE", FLOAT, 0.0, "Angle above the horizon, radians; replaces VIEW."),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nau_py.model.attribute import AttributeSet, colour, flag, number, vector
+from nau_py.model.attribute import AttributeSet, choice, colour, flag, number, vector
 from nau_py.model.values import DataType
 
 FLOAT = DataType.FLOAT
@@ -21,6 +21,15 @@ LIGHT = AttributeSet.of(
         number("CONSTANT_ATT", FLOAT, 1.0, "Constant attenuation; negative counts as 0."),
         number("LINEAR_ATT", FLOAT, 0.0, "Linear attenuation; negative counts as 0."),
         number("QUADRATIC_ATT", FLOAT, 0.0, "Quadratic attenuation; negative counts as 0."),
+        choice(
+            "SHAPE",
+            "DIRECTIONAL",
+            "DIRECTIONAL POINT SPOT RECTANGLE DISC SPHERE",
+            "nau_py: the light as `direct` and `path` see it.",
+        ),
+        vector("EDGE_U", (1.0, 0.0, 0.0, 0.0), "nau_py: one side of a RECTANGLE about POSITION."),
+        vector("EDGE_V", (0.0, 0.0, 1.0, 0.0), "nau_py: the other side of a RECTANGLE."),
+        number("RADIUS", FLOAT, 1.0, "nau_py: of a SPHERE, or of a DISC across DIRECTION."),
         flag("ENABLED", True, "Informational only, as in Nau."),
         number("ID", DataType.INT, -1, "Index inside the running pass.", readonly=True),
     ],

@@ -1,0 +1,215 @@
+"""Ray generation from the pass's camera, and the sums over a pixel's samples."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.raytrace.kernels.jit import V3, inner, kernel
+from nau_py.raytrace.kernels.memory import getter
+from nau_py.raytrace.kernels.sampling import on_disk, sobol2, uniform
+from nau_py.raytrace.kernels.tables import (
+    PRIMARY,
+    TRACE,
+    set_heading,
+    set_media,
+    set_origin,
+    set_weight,
+)
+from nau_py.raytrace.kernels.vec import dot, minus, plus, scaled, unit
+
+CAMERA = np.dtype(
+    [
+        ("position", "f8", 3),
+        ("forward", "f8", 3),
+        ("right", "f8", 3),
+        ("up", "f8", 3),
+        ("low", "f8", 2),
+        ("high", "f8", 2),
+        ("corner", "f8", 2),
+        ("size", "f8", 2),
+        ("near", "f8"),
+        ("aperture", "f8"),
+        ("focus", "f8"),
+        ("ortho", "i4"),
+    ],
+    align=True,
+)
+"""``low`` and ``high``: extent of the image plane, at distance 1 for perspective. ``corner`` and
+``size``: the viewport, pixels. ``aperture``: radius of the lens; ``focus``: distance along
+``forward`` at which it is sharp."""
+
+_position, _forward = getter(CAMERA, "position"), getter(CAMERA, "forward")
+_right, _up = getter(CAMERA, "right"), getter(CAMERA, "up")
+_low, _high = getter(CAMERA, "low"), getter(CAMERA, "high")
+_corner, _size = getter(CAMERA, "corner"), getter(CAMERA, "size")
+
+CENTRE, JITTER, STRATA, SOBOL = range(4)
+"""Where the samples of a pixel lie."""
+ITEM = np.dtype([("pixel", "i8"), ("first", "i4"), ("count", "i4")], align=True)
+"""A pixel to sample: flat index, first sample number, and how many."""
+
+
+@inner
+def camera_ray(camera: Any, x: float, y: float, lx: float, ly: float) -> tuple[V3, V3]:
+    """Origin on the near plane and unit direction through image point (x, y), in pixels.
+
+    (lx, ly): a point of the unit disk on the lens; Kolb et al. 1995, the thin lens.
+    """
+    corner, size, low, high = _corner(camera), _size(camera), _low(camera), _high(camera)
+    a = (x - corner[0]) / size[0]
+    b = (y - corner[1]) / size[1]
+    sx = low[0] + a * (high[0] - low[0])
+    sy = low[1] + b * (high[1] - low[1])
+    forward, right, up = _forward(camera), _right(camera), _up(camera)
+    across = plus(scaled(right, sx), scaled(up, sy))
+    position = _position(camera)
+    if camera.ortho:
+        return plus(position, plus(scaled(forward, camera.near), across)), forward
+    plane = plus(forward, across)
+    if not camera.aperture > 0.0:
+        return plus(position, scaled(plane, camera.near)), unit(plane)
+    sharp = plus(position, scaled(plane, camera.focus))
+    offset = plus(scaled(right, camera.aperture * lx), scaled(up, camera.aperture * ly))
+    lens = plus(position, offset)
+    d = unit(minus(sharp, lens))
+    return plus(lens, scaled(d, camera.near / dot(d, forward))), d
+
+
+@kernel
+def camera_rays(
+    cameras: Any,
+    x: NDArray[np.float64],
+    y: NDArray[np.float64],
+    origin: NDArray[np.float32],
+    direction: NDArray[np.float32],
+) -> None:
+    """``camera_ray`` for arrays, through the centre of the lens."""
+    for i in range(x.shape[0]):
+        o, d = camera_ray(cameras[0], x[i], y[i], 0.0, 0.0)
+        for k in range(3):
+            origin[i, k] = o[k]
+            direction[i, k] = d[k]
+
+
+@inner
+def reset(path: Any) -> None:
+    """The state of a fresh path: full weight, in vacuum."""
+    set_weight(path, (1.0, 1.0, 1.0, 1.0))
+    set_media(path, (-1, -1, -1, -1))
+    path.tmax = np.inf
+    path.travelled = 0.0
+    path.pdf = 0.0
+    path.initial = 0.0
+    path.depth = 1
+    path.layers = 0
+    path.band = -1
+    path.kind = PRIMARY
+    path.status = TRACE
+
+
+@kernel
+def generate(
+    cameras: Any,
+    lens: int,
+    rule: int,
+    side: int,
+    seed: np.uint32,
+    width: int,
+    items: Any,
+    queue: NDArray[Any],
+) -> None:
+    """A path for every sample of ``items``. ``lens``: 1 for the thin lens, 0 for a pinhole."""
+    at = 0
+    camera = cameras[0]
+    for i in range(items.shape[0]):
+        item = items[i]
+        pixel = np.uint32(item.pixel)
+        column, row = float(item.pixel % width), float(item.pixel // width)
+        for k in range(item.count):
+            sample = np.uint32(item.first + k)
+            path = queue[at]
+            reset(path)
+            dx, dy = 0.5, 0.5
+            if rule == SOBOL:
+                dx, dy = sobol2(seed, pixel, sample, np.uint32(0))
+            elif rule != CENTRE:
+                dx = uniform(seed, pixel, sample, np.uint32(0))
+                dy = uniform(seed, pixel, sample, np.uint32(1))
+                if rule == STRATA:
+                    dx = min((sample % side + dx) / side, 0.99999994)
+                    dy = min((sample // side % side + dy) / side, 0.99999994)
+            lx, ly = 0.0, 0.0
+            if lens:
+                a, b = sobol2(seed, pixel, sample, np.uint32(2))
+                lx, ly = on_disk(a, b)
+            o, d = camera_ray(camera, column + dx, row + dy, lx, ly)
+            set_origin(path, o)
+            set_heading(path, d)
+            path.index = at
+            path.pixel = pixel
+            path.sample = sample
+            at += 1
+
+
+@kernel
+def enqueue(
+    origin: NDArray[np.float32],
+    direction: NDArray[np.float32],
+    tmax: NDArray[np.float32],
+    pixel: NDArray[np.uint32],
+    sample: NDArray[np.uint32],
+    depth: int,
+    kind: int,
+    initial: float,
+    queue: NDArray[Any],
+) -> None:
+    """Paths for the rays that a Python program sends. ``tmax`` has one entry, or one a ray."""
+    for i in range(origin.shape[0]):
+        path = queue[i]
+        reset(path)
+        set_origin(path, (float(origin[i, 0]), float(origin[i, 1]), float(origin[i, 2])))
+        d = (float(direction[i, 0]), float(direction[i, 1]), float(direction[i, 2]))
+        set_heading(path, d)
+        path.tmax = tmax[i if tmax.shape[0] > 1 else 0]
+        path.index = i
+        path.pixel = pixel[i]
+        path.sample = sample[i]
+        path.depth = depth
+        path.kind = kind
+        path.initial = initial
+
+
+@kernel
+def accumulate(
+    radiance: NDArray[np.float32],
+    items: Any,
+    mean: NDArray[np.float64],
+    squares: NDArray[np.float64],
+    number: NDArray[np.int64],
+    bad: NDArray[np.int64],
+) -> None:
+    """Add the samples of each pixel to its mean and sum of squared deviations.
+
+    Welford, *Note on a Method for Calculating Corrected Sums of Squares and Products*, 1962.
+    Samples that are not finite are dropped: ``bad`` holds how many, and the first one's pixel.
+    """
+    at = 0
+    for i in range(items.shape[0]):
+        for _ in range(items[i].count):
+            c = radiance[at]
+            at += 1
+            if not (isfinite(c[0]) and isfinite(c[1]) and isfinite(c[2]) and isfinite(c[3])):
+                if bad[0] == 0:
+                    bad[1] = items[i].pixel
+                bad[0] += 1
+                continue
+            number[i] += 1
+            for k in range(4):
+                delta = float(c[k]) - mean[i, k]
+                mean[i, k] += delta / number[i]
+                if k < 3:
+                    squares[i, k] += delta * (float(c[k]) - mean[i, k])
