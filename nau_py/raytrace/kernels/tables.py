@@ -101,9 +101,9 @@ ARRAYS: dict[str, str | np.dtype[np.void]] = {
 }
 """The arrays of a scene. Triangles, vertices (3 a row), attributes (4 a row) and materials as in
 RayGeometry; ``smooth``: triangles whose normals differ; ``emitter_pdf``: density over area by
-triangle; ``closest`` and ``any_hit``: codes of programs by ray type and material; the rest by ray type: ``miss`` codes; ``has_any_hit`` 0, 1 or 2
-(a Python one); ``visibility`` where there is no closest-hit program; ``deferred_shadows`` where
-Python must answer what is in the way."""
+triangle; ``closest`` and ``any_hit``: codes of programs by ray type and material; the rest by ray
+type: ``miss`` codes; ``has_any_hit`` 0, 1 or 2 (a Python one); ``visibility`` where there is no
+closest-hit program; ``deferred_shadows`` where Python must answer what is in the way."""
 
 SCENE = np.dtype(
     [
