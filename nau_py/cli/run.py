@@ -60,6 +60,10 @@ def run(
         list[Path] | None, typer.Option(help="Folder to load ray programs from.")
     ] = None,
     no_programs: Annotated[bool, typer.Option(help="Refuse all ray programs of files.")] = False,
+    check_numerics: Annotated[
+        bool, typer.Option(help="Fail on any value that is not finite.")
+    ] = False,
+    show_mask: Annotated[bool, typer.Option(help="Tint the traced pixels of the picture.")] = False,
     quiet: Annotated[bool, typer.Option(help="No table, no progress, no warnings.")] = False,
     debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
     doctor: Annotated[bool, typer.Option(help="Say what this machine has and lacks.")] = False,
@@ -79,7 +83,12 @@ def run(
 
     loaded = nau_py.load(project)
     options = RunOptions(
-        spp, seed, threads, tuple(str(p) for p in allow_programs or ()), no_programs
+        spp,
+        seed,
+        threads,
+        tuple(str(p) for p in allow_programs or ()),
+        no_programs,
+        check_numerics=check_numerics,
     )
 
     def work() -> int:
@@ -98,7 +107,7 @@ def run(
                 keep_targets=targets is not None,
                 progress=progress,
             )
-            reports = _render(renderer, output, targets, first, last)
+            reports = _render(renderer, output, targets, first, last, show_mask)
         if not quiet:
             say((d for d in renderer.diagnostics if d.severity is Severity.WARNING), loaded.sources)
         _finish(reports, report, quiet, explain)
@@ -108,14 +117,22 @@ def run(
 
 
 def _render(
-    renderer: Any, output: Path | None, targets: Path | None, first: int, last: int
+    renderer: Any,
+    output: Path | None,
+    targets: Path | None,
+    first: int,
+    last: int,
+    show_mask: bool,
 ) -> list[dict[str, Any]]:
     """Render frames ``first`` to ``last``, writing what is asked for."""
     from nau_py.run.output import write_image, write_targets
+    from nau_py.run.overlay import mask_overlay
 
     reports = []
     for index in range(first, last + 1):
         frame = renderer.render(index)
+        if show_mask:
+            frame.image = mask_overlay(frame.image, frame.targets, renderer.plan)
         reports.append(frame.report)
         if output is not None and _numbered(output):
             write_image(output.with_name(output.name % index), frame.image)

@@ -7,6 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from nau_py.model.element import Element
+from nau_py.model.mask import MaskPass
 from nau_py.model.node import Attr, Child, Items, Node
 from nau_py.model.passes import Pass, SceneReference
 from nau_py.model.raytrace import RaytracePass
@@ -142,6 +143,7 @@ PASS_CLASSES: dict[str, type[Pass]] = {
     "raytrace": RaytracePass,
     "rt": RaytracePass,
     "optix": RaytracePass,
+    "mask": MaskPass,
     "optixPrime": RayQueryPass,
     "embree": RayQueryPass,
 }

@@ -118,6 +118,13 @@ class InputBuffer(Node):
         str | None,
         Attr(doc="This input selects pixels, by this component.", values=("x", "y", "z", "w")),
     ] = None
+    weight: Annotated[
+        str | None,
+        Attr(
+            doc="What weights below 1 mean: all samples, to be blended, or so many of them.",
+            values=("blend", "spp"),
+        ),
+    ] = None
 
 
 class OutputBuffer(Node):

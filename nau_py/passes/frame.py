@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 class RunOptions:
     """What the user asks of a run, beside the project.
 
-    ``samples`` overrides RAYS_PER_PIXEL; ``threads`` of 0 means one a core.
+    ``samples`` overrides RAYS_PER_PIXEL; ``threads`` of 0 means one a core; ``check_numerics``
+    makes any value that is not finite an error.
     """
 
     samples: int | None = None
@@ -31,6 +32,7 @@ class RunOptions:
     allow_programs: tuple[str, ...] = ()
     no_programs: bool = False
     tile: int = 16384
+    check_numerics: bool = False
 
 
 @dataclass(slots=True)
@@ -47,6 +49,8 @@ class PassRecord:
     avoided: int = 0
     est_error: float | None = None
     nonfinite: int = 0
+    blame: str = ""
+    """Where the first value that is not finite came from."""
     notes: list[str] = field(default_factory=list)
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
@@ -33,6 +36,7 @@ class RaytraceClass:
     def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
         from nau_py.passes.drawing import pass_value, process, target_and_rect
         from nau_py.passes.tracing import read_inputs, read_mask, store_colours, tracing_state
+        from nau_py.raytrace.adaptive import run_adaptive
         from nau_py.raytrace.camera import camera_rays, camera_record
         from nau_py.raytrace.launch import LaunchSettings, Work, run_launch, select
 
@@ -49,7 +53,12 @@ class RaytraceClass:
         pixels = select(mask, width, height)
         scene = state.scene(pass_, frame, target, inputs)
         options = frame.session.options
-        samples = options.samples or int(pass_value(frame.project, pass_, "RAYS_PER_PIXEL"))
+
+        def value(name: str) -> float:
+            return float(pass_value(frame.project, pass_, name))
+
+        samples = options.samples or int(value("RAYS_PER_PIXEL"))
+        accumulate = bool(value("ACCUMULATE"))
         name = pass_.name or ""
         work = Work(
             scene,
@@ -63,19 +72,44 @@ class RaytraceClass:
                 options.threads,
                 options.tile,
                 str(pass_value(frame.project, pass_, "SAMPLER")),
+                accumulate or value("TARGET_ERROR") > 0,
             ),
             state.label,
         )
         progress = frame.session.progress
-        result = run_launch(work, pixels, lambda done, total: progress(name, done, total))
+
+        def tell(done: int, total: int) -> None:
+            progress(name, done, total)
+
+        if value("TARGET_ERROR") > 0:
+            shape = (height, width)
+            result = run_adaptive(work, pixels, shape, value("TARGET_ERROR"), tell)
+        else:
+            kept = state.kept(work, pixels) if accumulate else None
+            counts = _spp(pass_, mask, pixels, samples)
+            result = run_launch(work, pixels, tell, counts, kept)
         store_colours(target, pixels, result.colours)
         process(pass_.postProcess, frame)
         record.pixels = len(pixels)
         record.rays = dict(result.counts.rays)
-        record.avoided = (width * height - len(pixels)) * samples
+        record.avoided = width * height * samples - result.taken
         record.est_error = result.est_error
         record.nonfinite = result.counts.nonfinite
+        record.blame = result.counts.blamed(width)
         if result.counts.cut_layers:
             record.notes.append(
                 f"{result.counts.cut_layers} rays met more ignored hits than the limit"
             )
+
+
+def _spp(
+    pass_: RaytracePass,
+    mask: NDArray[Any] | None,
+    pixels: NDArray[np.int64],
+    samples: int,
+) -> NDArray[np.int64] | None:
+    """Samples of each pixel where the mask's weights say how many; None: the same for all."""
+    if mask is None or pass_.mask is None or pass_.mask.weight != "spp":
+        return None
+    weight = np.clip(mask.reshape(-1)[pixels].astype(np.float64), 0.0, 1.0)
+    return np.maximum(np.rint(weight * samples), 1).astype(np.int64)

@@ -36,6 +36,7 @@ def pass_classes() -> dict[str, PassClass]:
     from nau_py.passes.compute import ComputeClass
     from nau_py.passes.default import DefaultClass
     from nau_py.passes.depthmap import DepthmapClass
+    from nau_py.passes.mask import MaskClass
     from nau_py.passes.quad import QuadClass
     from nau_py.passes.raytrace import RaytraceClass
 
@@ -45,6 +46,7 @@ def pass_classes() -> dict[str, PassClass]:
         "quad": QuadClass(),
         "depthmap": DepthmapClass(),
         "compute": ComputeClass(),
+        "mask": MaskClass(),
         "raytrace": raytrace,
         "rt": raytrace,
         "optix": raytrace,

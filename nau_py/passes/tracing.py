@@ -23,6 +23,7 @@ from nau_py.raster.semantics import resolve
 from nau_py.raytrace.accel import Accelerator
 from nau_py.raytrace.geometry import RayGeometry, gather
 from nau_py.raytrace.hits import RayLight, RayMaterial
+from nau_py.raytrace.launch import Estimate, LaunchResult, Work
 from nau_py.raytrace.programs import ProgramLoader, TrustRule
 from nau_py.raytrace.scene import ProgramTable, Scene, TexelStore, TraceSettings
 from nau_py.raytrace.texture import RayTexture
@@ -49,6 +50,7 @@ class TracingState:
         self.geometry: RayGeometry = gather(session.world.objects(pass_.scene_names))
         self.accelerator: Accelerator = Accelerator(self.geometry)
         self.texels = TexelStore()
+        self._kept: tuple[bytes, Estimate] | None = None
         self._textures: dict[TextureBinding, RayTexture | None] = {}
         loader = _loader(session)
         entry = pass_.rtEntryPoint
@@ -65,6 +67,15 @@ class TracingState:
             self.exception = loader.load(entry.exception, what, EXCEPTION)
         self.mapped = session.pass_materials(pass_)
         self.programs = self._bind(pass_, loader)
+
+    def kept(self, work: Work, pixels: NDArray[np.int64]) -> LaunchResult:
+        """What earlier frames sampled, if camera, mask, lights and materials are as they were."""
+        tables = work.scene.tables
+        parts = [work.camera, pixels, tables.arrays["lights"], tables.arrays["materials"]]
+        key = b"".join(part.tobytes() for part in parts)
+        if self._kept is None or self._kept[0] != key:
+            self._kept = (key, Estimate.empty(len(pixels)))
+        return LaunchResult(self._kept[1])
 
     def _render_material(self, name: str) -> RenderMaterial | None:
         return self.mapped[name] or self.session.world.materials.get(DEFAULT_LIBRARY, name)

@@ -27,12 +27,16 @@ I64 = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class LaunchSettings:
-    """``samples`` a pixel, ``threads`` (0: one a core), rays a ``tile``, where samples lie."""
+    """``samples`` a pixel, ``threads`` (0: one a core), rays a ``tile``, where samples lie.
+
+    ``progressive``: more samples may follow, so even a single one is jittered.
+    """
 
     samples: int
     threads: int = 0
     tile: int = 16384
     sampler: str = "SOBOL"
+    progressive: bool = False
 
 
 @dataclass(slots=True)
@@ -71,6 +75,8 @@ class LaunchResult:
 
     estimate: Estimate
     counts: RayCounts = field(default_factory=RayCounts)
+    taken: int = 0
+    """Samples that this result cost."""
 
     @property
     def colours(self) -> F32:
@@ -142,7 +148,8 @@ class Work:
         return tracer.counts
 
     def _rule(self) -> int:
-        if self.settings.samples == 1 and self.settings.sampler != "RANDOM":
+        single = self.settings.samples == 1 and not self.settings.progressive
+        if single and self.settings.sampler != "RANDOM":
             return kernel.CENTRE
         if self.settings.sampler == "STRATIFIED":
             side = round(self.settings.samples**0.5)
@@ -203,6 +210,7 @@ def run_launch(
     items["first"] = found.estimate.taken
     items["count"] = settings.samples if samples is None else samples
     found.estimate.taken += items["count"]
+    found.taken += int(items["count"].sum())
     parts = _parts(items["count"], settings.tile)
     threads = settings.threads or os.cpu_count() or 1
     with ThreadPoolExecutor(max_workers=threads) as pool:

@@ -43,6 +43,14 @@ class RayCounts:
             before, first = self.sources.get(source, (0, pixel))
             self.sources[source] = (before + count, min(first, pixel))
 
+    def blamed(self, width: int) -> str:
+        """Where values that are not finite came from, as the end of a sentence."""
+        found = sorted(self.sources.items(), key=lambda item: item[1][1])
+        if not found:
+            return ""
+        source, (_, pixel) = found[0]
+        return f"; the first at pixel ({pixel % width}, {pixel // width}) from {source}"
+
     def merge(self, other: RayCounts) -> None:
         for kind, count in other.rays.items():
             self.add(kind, count)

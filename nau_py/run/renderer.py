@@ -199,6 +199,9 @@ class Renderer:
         record.ms = (perf_counter() - start) * 1000
         if record.nonfinite:
             message = f"pass '{step.name}': {record.nonfinite} samples or rays were not finite"
+            message += record.blame
+            if context.session.options.check_numerics:
+                raise NauError(error("T014", step.pass_.location, message))
             self._note([warning("T014", step.pass_.location, message)])
         self._note(context.session.resources.diagnostics)
         return record

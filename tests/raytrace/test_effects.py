@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -239,7 +241,7 @@ def light_points(shape: str, n: int = 64) -> np.ndarray:  # type: ignore[type-ar
         found = 0.5 * np.stack([r * np.cos(2 * np.pi * b), r * np.sin(2 * np.pi * b), z], axis=1)
     else:
         found = np.zeros((1, 3))
-    return np.asarray(found + [0, 4, 0])
+    return np.asarray(found + np.array([0, 4, 0]))
 
 
 DOWN = '<POSITION x="0" y="1.5" z="0" /><VIEW x="0" y="-1" z="0" /><UP x="0" y="0" z="-1" />'
@@ -262,7 +264,7 @@ def test_penumbra_of_a_half_plane(folder: Folder, shape: str) -> None:
         fov=30,
     )
     found = picture(project)[..., 0].mean(axis=0)
-    origin, direction = pixel_rays(size, (0, 0, 0), 30)
+    _, direction = pixel_rays(size, (0, 0, 0), 30)
     floor = np.stack([direction[4, :, 0] * 1.5, np.zeros(size[0]), np.zeros(size[0])], axis=1)
     to = light_points(shape)[None] - floor[:, None]
     length = np.linalg.norm(to, axis=-1)
@@ -464,17 +466,20 @@ def test_caustic_energy(folder: Folder) -> None:
     rs = ((cosine - 1.5 * behind) / (cosine + 1.5 * behind)) ** 2
     rp = ((1.5 * cosine - behind) / (1.5 * cosine + behind)) ** 2
     share = (1 - (rs + rp) / 2) ** 2
-    start = np.where(meets[:, None], q + [0, 1.2, 0], p)
+    start = np.where(meets[:, None], q + np.array([0, 1.2, 0]), p)
     heading = np.where(meets[:, None], out, d)
     weight = np.where(meets, share, 1.0)
     falls = heading[:, 1] < 0
     at = start + heading * (-start[:, 1] / np.where(falls, heading[:, 1], -1))[:, None]
     r = np.hypot(at[:, 0], at[:, 2])
-    for low, high in zip(rings[:-1], rings[1:]):
+    for low, high in pairwise(rings):
         chosen = falls & (r >= low) & (r < high)
         irradiance = weight[chosen].sum() * power / (np.pi * (high**2 - low**2))
         seen = (radius >= low) & (radius < high)
-        assert image[seen].mean() == pytest.approx(albedo * irradiance / np.pi, rel=0.1), (low, high)
+        assert image[seen].mean() == pytest.approx(albedo * irradiance / np.pi, rel=0.1), (
+            low,
+            high,
+        )
 
 
 def test_depth_zero_and_no_light(folder: Folder) -> None:

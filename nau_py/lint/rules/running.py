@@ -121,6 +121,15 @@ for row in (
         "<pipeline name='P'><pass name='draw'/></pipeline>",
     ),
     (
+        "E004",
+        ERROR,
+        "No mask to show",
+        "`--show-mask` tints the pixels that a raytrace pass selects; the pipeline has none with a "
+        "mask.",
+        "nau-run project.xml --show-mask",
+        "--pipeline with a masked raytrace pass",
+    ),
+    (
         "B001",
         ERROR,
         "Buffer file unreadable",

@@ -45,6 +45,14 @@ PASS = AttributeSet.of(
             "SOBOL STRATIFIED RANDOM",
             "nau_py: where built-in ray generation puts the samples of a pixel.",
         ),
+        number(
+            "TARGET_ERROR",
+            DataType.FLOAT,
+            0.0,
+            "nau_py: above 0, RAYS_PER_PIXEL is the most; pixels stop at this estimated error.",
+            minimum=0.0,
+        ),
+        flag("ACCUMULATE", False, "nau_py: frames add up while camera, mask and lights stay."),
         number("LIGHT_SAMPLES", _INT, 1, "nau_py: shadow rays a sample and area light.", minimum=1),
         number(
             "OCCLUSION_DISTANCE",

@@ -1,0 +1,136 @@
+"""The pass class ``mask``: selects the pixels that a raytrace pass traces.
+
+A selector gives every pixel a weight from 0 to 1; ``and`` is the least of its parts, ``or`` the
+greatest, ``not`` one less it.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from nau_py.model.node import Attr, Node, Variants
+from nau_py.model.passes import Pass
+from nau_py.model.values import DataType
+
+FLOAT = DataType.FLOAT
+
+
+class MaterialSelector(Node):
+    """1 where what is seen has this material."""
+
+    name: Annotated[str | None, Attr(doc="Material, or prefix and a final `*`.", required=True)] = (
+        None
+    )
+
+
+class PropertySelector(Node):
+    """1 where a COLOR attribute of the visible material lies between bounds; of a colour, its
+    greatest component."""
+
+    name: Annotated[str | None, Attr(doc="COLOR attribute.", required=True)] = None
+    above: Annotated[float | None, Attr(FLOAT, "Chosen where the value is greater.")] = None
+    below: Annotated[float | None, Attr(FLOAT, "Chosen where the value is less.")] = None
+
+
+class RegionSelector(Node):
+    """1 inside a rectangle of the picture, in parts of its width and height from the lower left."""
+
+    x: Annotated[float | None, Attr(FLOAT, "Left, 0 to 1; default 0.")] = None
+    y: Annotated[float | None, Attr(FLOAT, "Bottom, 0 to 1; default 0.")] = None
+    width: Annotated[float | None, Attr(FLOAT, "Part of the width; default 1.")] = None
+    height: Annotated[float | None, Attr(FLOAT, "Part of the height; default 1.")] = None
+    edge: Annotated[float | None, Attr(FLOAT, "Width of the linear edge, pixels; default 0.")] = (
+        None
+    )
+
+
+class DistanceSelector(Node):
+    """1 up to a distance from the camera, then linear down to a floor."""
+
+    near: Annotated[float | None, Attr(FLOAT, "Full up to here, world units.", required=True)] = (
+        None
+    )
+    far: Annotated[float | None, Attr(FLOAT, "The floor from here on; default `near`.")] = None
+    floor: Annotated[float | None, Attr(FLOAT, "Weight beyond `far`; default 0.")] = None
+
+
+class GazeSelector(Node):
+    """1 about the point that the eye looks at, then linear down to a constant floor."""
+
+    x: Annotated[float | None, Attr(FLOAT, "Point, part of the width; default 0.5.")] = None
+    y: Annotated[float | None, Attr(FLOAT, "Point, part of the height; default 0.5.")] = None
+    inner: Annotated[
+        float | None, Attr(FLOAT, "Radius of the fovea, parts of the height.", required=True)
+    ] = None
+    outer: Annotated[
+        float | None, Attr(FLOAT, "Radius at which the floor begins; default `inner`.")
+    ] = None
+    floor: Annotated[float | None, Attr(FLOAT, "Weight outside; default 0.")] = None
+
+
+class ShadowBorderSelector(Node):
+    """1 where a shadow map is undecided: of the eight texels about a point, some are nearer to the
+    light than it and some are not."""
+
+    texture: Annotated[
+        str | None, Attr(doc="Depth texture, `lib::name`.", required=True, ref="texture")
+    ] = None
+    camera: Annotated[str | None, Attr(doc="Camera that drew it.", required=True, ref="camera")] = (
+        None
+    )
+    radius: Annotated[
+        int | None, Attr(DataType.INT, "Distance of the eight neighbours, texels; default 1.")
+    ] = None
+    bias: Annotated[float | None, Attr(FLOAT, "Depth bias, 0 to 1; default 0.002.")] = None
+
+
+class TextureSelector(Node):
+    """A component of a texture of the picture's size, clamped to 0 to 1."""
+
+    name: Annotated[str | None, Attr(doc="Texture, `lib::name`.", required=True, ref="texture")] = (
+        None
+    )
+    component: Annotated[str | None, Attr(doc="Default the last.", values=("x", "y", "z", "w"))] = (
+        None
+    )
+
+
+SELECTORS: dict[str, type[Node]] = {
+    "material": MaterialSelector,
+    "property": PropertySelector,
+    "region": RegionSelector,
+    "distance": DistanceSelector,
+    "gaze": GazeSelector,
+    "shadowBorder": ShadowBorderSelector,
+    "texture": TextureSelector,
+}
+
+
+class AndSelector(Node):
+    """The least of its parts."""
+
+    parts: Annotated[list[Any], Variants(SELECTORS)] = Field(default_factory=list)
+
+
+class OrSelector(Node):
+    """The greatest of its parts."""
+
+    parts: Annotated[list[Any], Variants(SELECTORS)] = Field(default_factory=list)
+
+
+class NotSelector(Node):
+    """One less the greatest of its parts."""
+
+    parts: Annotated[list[Any], Variants(SELECTORS)] = Field(default_factory=list)
+
+
+SELECTORS |= {"and": AndSelector, "or": OrSelector, "not": NotSelector}
+
+
+class MaskPass(Pass):
+    """Writes weights: position in the first three components of its target, weight in the last.
+    Several selectors count as `or`; none selects everything."""
+
+    select: Annotated[list[Any], Variants(SELECTORS, "select")] = Field(default_factory=list)

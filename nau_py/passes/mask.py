@@ -1,0 +1,124 @@
+"""Class ``mask``: draws what is seen where, and writes the weight of each pixel."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.graph.contract import Access
+from nau_py.model.library import DEFAULT_LIBRARY
+from nau_py.model.linked import Project
+from nau_py.model.mask import MaskPass, ShadowBorderSelector, TextureSelector
+from nau_py.model.passes import Pass
+from nau_py.passes.access import add_process, add_target, texture
+from nau_py.scene.transforms import to_unit_cube
+
+if TYPE_CHECKING:
+    from nau_py.passes.frame import FrameContext, PassRecord
+    from nau_py.scene.material import RenderMaterial
+
+ITEM_MATERIAL = "__item"
+
+
+def selectors(pass_: MaskPass) -> list[Any]:
+    """Every selector of the pass, those inside others as well."""
+    return [node for top in pass_.select for node in top.walk()]
+
+
+class MaskClass:
+    """Writes world position and weight of each pixel into its render target."""
+
+    def access(self, project: Project, pass_: Pass) -> Access:
+        access = Access()
+        if isinstance(pass_, MaskPass):
+            for node in selectors(pass_):
+                name = None
+                if isinstance(node, TextureSelector):
+                    name = node.name
+                elif isinstance(node, ShadowBorderSelector):
+                    name = node.texture
+                if name:
+                    access.add_read(texture(name, None))
+        add_process(access, pass_)
+        add_target(access, project, pass_, clears=True)
+        return access
+
+    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
+        from nau_py.passes.drawing import begin, camera_context, note_pixels, process
+        from nau_py.raster.draw import draw, draw_list
+        from nau_py.raytrace.masks import weights
+
+        assert isinstance(pass_, MaskPass)
+        frame.camera = frame.world.camera(pass_.camera_name)
+        target = begin(pass_, frame, uses_camera=True)
+        target.clear_color((0.0, 0.0, 0.0, 0.0))
+        process(pass_.preProcess, frame)
+        drawn = frame.session.pass_materials(pass_)
+        numbered: dict[str, RenderMaterial] = {}
+        names: list[str] = []
+
+        def numbered_material(name: str) -> RenderMaterial | None:
+            source = drawn[name]
+            if source is None or name in numbered:
+                return numbered.get(name)
+            names.append(name)
+            numbered[name] = self._item(frame, source, len(names))
+            return numbered[name]
+
+        objects = frame.world.objects(pass_.scene_names)
+        draw(draw_list(objects, numbered_material), camera_context(pass_, frame, target))
+        image = target.textures[target.colors[0].name]
+        seen = np.asarray(image.read(), np.float32)
+        visible = self._visible(pass_, frame, seen, [(n, drawn[n]) for n in names])
+        chosen = weights(pass_.select, visible)
+        image.write(np.dstack([seen[..., :3], chosen]))
+        process(pass_.postProcess, frame)
+        note_pixels(record, frame)
+        selected = int((chosen > 0).sum())
+        record.notes.append(f"{selected} of {chosen.size} pixels selected")
+
+    def _item(self, frame: FrameContext, source: RenderMaterial, number: int) -> RenderMaterial:
+        """``source`` as the item shader draws it: its state, and ``number`` for a colour."""
+        plain = frame.world.materials.get(DEFAULT_LIBRARY, ITEM_MATERIAL)
+        assert plain is not None
+        state = {k: v for k, v in source.state.items() if k not in ("BLEND", "ALPHA_TEST")}
+        return replace(plain, colours={"EMISSION": (float(number), 0.0, 0.0, 1.0)}, state=state)
+
+    def _visible(
+        self,
+        pass_: MaskPass,
+        frame: FrameContext,
+        seen: NDArray[np.float32],
+        materials: list[tuple[str, RenderMaterial | None]],
+    ) -> Any:
+        from nau_py.raytrace.masks import Visible
+
+        visible = Visible(
+            seen[..., :3],
+            np.rint(seen[..., 3]).astype(np.int32) - 1,
+            [(name, dict(m.colours) if m else {}) for name, m in materials],
+            frame.camera.position,
+        )
+        for node in selectors(pass_):
+            name = node.name if isinstance(node, TextureSelector) else None
+            if isinstance(node, ShadowBorderSelector):
+                name = node.texture
+                visible.cameras[node.camera or ""] = _unit_cube(frame, node.camera)
+            if name:
+                found = frame.session.resources.texture(name)
+                if found is not None:
+                    values = found.read()
+                    scale = 255.0 if values.dtype == np.uint8 else 1.0
+                    visible.textures[name] = np.atleast_3d(values) / np.float32(scale)
+        return visible
+
+
+def _unit_cube(frame: FrameContext, name: str | None) -> NDArray[np.float64]:
+    """World to the unit cube of a camera, as it last drew."""
+    camera = frame.world.camera(name)
+    rect = frame.session.camera_rects.get(camera.name) or frame.world.viewport(camera.viewport)
+    projection = camera.projection_matrix(rect.aspect)
+    return np.asarray(to_unit_cube() @ projection @ camera.view_matrix(), np.float64)
