@@ -71,8 +71,8 @@ class GazeSelector(Node):
 
 
 class ShadowBorderSelector(Node):
-    """1 where a shadow map is undecided: of the eight texels about a point, some are nearer to the
-    light than it and some are not."""
+    """1 where a shadow map is undecided: of a point's texel and the eight about it, some are nearer
+    to the light than the surface and some are not."""
 
     texture: Annotated[
         str | None, Attr(doc="Depth texture, `lib::name`.", required=True, ref="texture")
@@ -82,6 +82,14 @@ class ShadowBorderSelector(Node):
     )
     radius: Annotated[
         int | None, Attr(DataType.INT, "Distance of the eight neighbours, texels; default 1.")
+    ] = None
+    spread: Annotated[
+        float | None,
+        Attr(
+            FLOAT,
+            "Tangent of the light's half angle: leaves out blockers too near for their penumbra "
+            "to reach so far; default 0, none.",
+        ),
     ] = None
     bias: Annotated[float | None, Attr(FLOAT, "Depth bias, 0 to 1; default 0.002.")] = None
 

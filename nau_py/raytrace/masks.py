@@ -147,7 +147,12 @@ def _gaze(selector: GazeSelector, seen: Visible) -> F64:
 
 
 def _shadow_border(selector: ShadowBorderSelector, seen: Visible) -> F64:
-    """The report's test: of a shadow map's eight neighbours, a mixture of lit and shadowed."""
+    """The report's test: of a shadow map's texel and its eight neighbours, a mixture of lit and
+    shadowed. With ``spread``, only where the blocker is far enough away for its penumbra to reach.
+
+    A neighbour is compared with the plane of the surface there, not with the point: Isidoro,
+    *Shadow Mapping: GPU-based Tips and Techniques*, 2006 (receiver plane depth bias).
+    """
     depth = np.asarray(seen.textures[selector.texture or ""][..., 0], np.float64)
     rows, columns = depth.shape
     p = seen.position.astype(np.float64).reshape(-1, 3)
@@ -156,15 +161,57 @@ def _shadow_border(selector: ShadowBorderSelector, seen: Visible) -> F64:
         unit = clip[:, :3] / clip[:, 3:]
     unit = np.where(np.isfinite(unit), unit, -1.0)
     inside = ((unit >= 0) & (unit <= 1)).all(axis=1) & (seen.item.reshape(-1) >= 0)
+    slope_u, slope_v, towards = _receiver_plane(unit.reshape(*seen.shape, 3))
     column = np.floor(unit[:, 0] * columns).astype(np.int64)
     row = np.floor(unit[:, 1] * rows).astype(np.int64)
     step = max(selector.radius or 1, 1)
     bias = SHADOW_BIAS if selector.bias is None else selector.bias
-    shadowed = np.zeros(len(p), np.int64)
+    matrix = seen.cameras[selector.camera or ""]
+    reach = 0.0
+    if selector.spread:  # gap in map depth from which a penumbra is as wide as the step
+        across, along = _scale(matrix, p, unit, clip[:, 3])
+        reach = step / columns / across / selector.spread * along
+    centre = depth[np.clip(row, 0, rows - 1), np.clip(column, 0, columns - 1)]
+    hidden, wide = unit[:, 2] > centre + bias, unit[:, 2] - centre >= reach
+    found = np.zeros(len(p), bool)
     for dx, dy in EIGHT:
         at = depth[
             np.clip(row + dy * step, 0, rows - 1), np.clip(column + dx * step, 0, columns - 1)
         ]
-        shadowed += unit[:, 2] > at + bias
-    border = inside & (shadowed > 0) & (shadowed < len(EIGHT))
-    return border.reshape(seen.shape).astype(np.float64)
+        plane = unit[:, 2] + slope_u * (dx * step / columns) + slope_v * (dy * step / rows)
+        there = plane > at + bias
+        found |= np.where(hidden, ~there & wide, there & (plane - at >= reach))
+    return (inside & towards & found).reshape(seen.shape).astype(np.float64)
+
+
+def _scale(matrix: F64, points: F64, unit: F64, w: F64) -> tuple[F64, F64]:
+    """Map units per world unit at ``points``, across and along the light's view (n,): the length
+    of the derivative of the projection."""
+    lengths = [
+        np.sqrt((((matrix[k, :3] - unit[:, k, None] * matrix[3, :3]) / w[:, None]) ** 2).sum(1))
+        for k in (0, 2)
+    ]
+    return lengths[0], lengths[1]
+
+
+def _receiver_plane(unit: F64) -> tuple[F64, F64, NDArray[np.bool_]]:
+    """Change of depth along u and v of the surface in each pixel, and whether it faces the light.
+
+    ``unit`` (h, w, 3): the map's coordinates. A surface seen from its lit side keeps its
+    orientation in the map, one seen from its dark side is mirrored there. Of the differences to
+    the two neighbours the smaller counts: the other may lead across an edge.
+    """
+
+    def difference(axis: int) -> F64:
+        step = np.diff(unit, axis=axis)
+        ahead = np.concatenate([step, step.take([-1], axis=axis)], axis=axis)
+        behind = np.concatenate([step.take([0], axis=axis), step], axis=axis)
+        nearer = np.abs(ahead).sum(axis=-1) <= np.abs(behind).sum(axis=-1)
+        return np.where(nearer[..., None], ahead, behind)
+
+    x, y = difference(1), difference(0)
+    det = x[..., 0] * y[..., 1] - x[..., 1] * y[..., 0]
+    safe = np.where(np.abs(det) > 1e-20, det, np.inf)
+    along_u = (x[..., 2] * y[..., 1] - y[..., 2] * x[..., 1]) / safe
+    along_v = (y[..., 2] * x[..., 0] - x[..., 2] * y[..., 0]) / safe
+    return along_u.reshape(-1), along_v.reshape(-1), (det > 0).reshape(-1)

@@ -91,9 +91,8 @@ def test_shadow_border(seen: Visible) -> None:
     depth[:, :4] = 0.2
     seen.textures["L::depth"] = depth
     # world x in 0..8 to the map's u; z is half way
-    u, _ = np.meshgrid((np.arange(8) + 0.5) / 8, np.arange(4))
-    seen.position[..., 0] = u
-    seen.position[..., 1] = 0.5
+    u, v = np.meshgrid((np.arange(8) + 0.5) / 8, (np.arange(4) + 0.5) / 4)
+    seen.position[..., 0], seen.position[..., 1] = u, v
     seen.position[..., 2] = 0.5
     seen.cameras["Sun"] = np.eye(4)
     border = ShadowBorderSelector(texture="L::depth", camera="Sun")
@@ -101,6 +100,10 @@ def test_shadow_border(seen: Visible) -> None:
     wide = ShadowBorderSelector(texture="L::depth", camera="Sun", radius=2)
     np.testing.assert_array_equal(weights([wide], seen)[0], [0, 0, 1, 1, 1, 1, 0, 0])
     np.testing.assert_array_equal(weights([border], seen)[3], 0)
+    # the blocker is 0.3 away, one texel 0.125: a light of half angle atan(0.5) reaches it, no less
+    for spread, reaches in ((0.5, 1), (0.4, 0)):
+        light = ShadowBorderSelector(texture="L::depth", camera="Sun", spread=spread)
+        assert weights([light], seen)[0, 4] == reaches
 
 
 MASKED = """\

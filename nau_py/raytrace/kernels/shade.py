@@ -20,11 +20,10 @@ from nau_py.raytrace.kernels.surface import facing, spawn
 from nau_py.raytrace.kernels.tables import (
     AMBIENT,
     OCCLUSION,
+    RECTANGLE,
     SHADOW,
-    colour_of,
     copy_path,
     diffuse_of,
-    direction_of,
     emission_of,
     heading_of,
     light_at,
@@ -125,7 +124,8 @@ def default_look(
     texel: V3,
 ) -> None:
     """Nau's default material (nau-format.md, 8.5) by the first light, with shadows where the pass
-    has a ray type for them; for Phong's models with the highlight SPECULAR cos^SHININESS."""
+    has a ray type for them; for Phong's models with the highlight SPECULAR cos^SHININESS. A light
+    with a shape is the mean over its points."""
     diffuse = rgb(diffuse_of(material))
     rest = scaled(diffuse, AMBIENT_FACTOR)
     if material.texture >= 0:
@@ -134,25 +134,40 @@ def default_look(
     if scene.lights_count == 0:
         return
     light = light_at(scene.lights, 0)
-    to = scaled(direction_of(light), -1.0)
-    cosine = dot(normal, to)
-    if not cosine > 0.0:
-        return
-    colour = colour_of(light)
-    lit = times(scaled(times(diffuse, colour), cosine), texel)
-    if code != LAMBERT:
-        away = scaled(heading_of(path), -1.0)
-        if code == PHONG:
-            lobe = dot(reflected(scaled(to, -1.0), normal), away)
+    samples = light_samples(scene, light)
+    for k in range(samples):
+        number = np.uint32(path.sample * samples + k)
+        dimension = np.uint32(LIGHT_DIMENSION + path.depth * 64)
+        x, y = 0.5, 0.5
+        if light.shape >= RECTANGLE:
+            x, y = sobol2(scene.seed, path.pixel, number, dimension)
+        to, distance, colour = arriving(light, origin, x, y)
+        unit_to = unit(to)
+        cosine = dot(normal, unit_to)
+        if not (distance > 0.0 and cosine > 0.0):
+            continue
+        colour = scaled(colour, 1.0 / samples)
+        lit = times(scaled(times(diffuse, colour), cosine), texel)
+        if code != LAMBERT:
+            away = scaled(heading_of(path), -1.0)
+            if code == PHONG:
+                lobe = dot(reflected(scaled(unit_to, -1.0), normal), away)
+            else:
+                lobe = dot(unit(plus(unit_to, away)), normal)
+            if lobe > 0.0:
+                shine = lobe ** float(material.shininess)
+                lit = plus(lit, scaled(times(specular_of(material), colour), shine))
+        if scene.shadow_type < 0:
+            add(tile, path, lit, 0.0)
         else:
-            lobe = dot(unit(plus(to, away)), normal)
-        if lobe > 0.0:
-            shine = lobe ** float(material.shininess)
-            lit = plus(lit, scaled(times(specular_of(material), colour), shine))
-    if scene.shadow_type < 0:
-        add(tile, path, lit, 0.0)
-        return
-    light_term(scene, tile, ray_type, path, origin, to, INFINITE, lit)
+            tmax = 1.0 if distance < INFINITE else INFINITE
+            light_term(scene, tile, ray_type, path, origin, to, tmax, lit)
+
+
+@inner
+def light_samples(scene: Any, light: Any) -> int:
+    """Shadow rays for one light: more than one only where it has an area."""
+    return max(int(scene.light_samples), 1) if light.shape >= RECTANGLE else 1
 
 
 @inner
@@ -166,10 +181,9 @@ def direct_light(
     albedo: V3,
 ) -> None:
     """What every light of the pass brings to a diffuse surface, with shadows."""
-    count = max(int(scene.light_samples), 1)
     for index in range(scene.lights_count):
         light = light_at(scene.lights, index)
-        samples = count if light.shape > 2 else 1
+        samples = light_samples(scene, light)
         dimension = np.uint32(LIGHT_DIMENSION + path.depth * 64 + index)
         for k in range(samples):
             number = np.uint32(path.sample * samples + k)
