@@ -46,6 +46,10 @@ BUILTIN_PROGRAMS: dict[str, tuple[str, str]] = {
         CLOSEST_HIT,
         "As `path`, with light re-emitted in other bands by FLUORESCENCE_RED, _GREEN and _BLUE.",
     ),
+    "material": (
+        CLOSEST_HIT,
+        "The colour that the material's own GLSL program gives, with the ray's origin for its eye.",
+    ),
     "emission": (CLOSEST_HIT, "The EMISSION colour."),
     "mirror": (CLOSEST_HIT, "SPECULAR times what the mirror direction sees."),
     "glossy": (

@@ -75,6 +75,7 @@ class RaytraceClass:
                 accumulate or value("TARGET_ERROR") > 0,
             ),
             state.label,
+            state.service,
         )
         progress = frame.session.progress
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,7 @@ from nau_py.model.raytrace import RayMaterial as RayMaterialNode
 from nau_py.model.texture import Texture
 from nau_py.passes.drawing import camera_context, pass_value
 from nau_py.passes.frame import FrameContext, Session
+from nau_py.passes.material_shading import MaterialShading
 from nau_py.paths import resolve as resolve_path
 from nau_py.raster.semantics import resolve
 from nau_py.raytrace.accel import Accelerator
@@ -26,6 +28,7 @@ from nau_py.raytrace.hits import RayLight, RayMaterial
 from nau_py.raytrace.launch import Estimate, LaunchResult, Work
 from nau_py.raytrace.programs import ProgramLoader, TrustRule
 from nau_py.raytrace.scene import ProgramTable, Scene, TexelStore, TraceSettings
+from nau_py.raytrace.service import MainThread
 from nau_py.raytrace.texture import RayTexture
 from nau_py.scene.images import ImageError, load_image
 from nau_py.scene.material import RenderMaterial, TextureBinding
@@ -52,7 +55,12 @@ class TracingState:
         self.texels = TexelStore()
         self._kept: tuple[bytes, Estimate] | None = None
         self._textures: dict[TextureBinding, RayTexture | None] = {}
-        loader = _loader(session)
+        self.mapped = session.pass_materials(pass_)
+        self.service = MainThread()
+        objects = session.world.objects(pass_.scene_names)
+        solid = [o for o in objects if o.mesh.primitive == "TRIANGLES"]
+        self.shading = MaterialShading(solid, self.mapped, self.service)
+        loader = _loader(session, {(CLOSEST_HIT, "material"): self.shading})
         entry = pass_.rtEntryPoint
         assert entry is not None
         label = f"project '{session.project.name}', pass '{pass_.name}'"
@@ -65,7 +73,6 @@ class TracingState:
         if entry.exception is not None:
             what = f"{label}, exception program '{entry.exception.proc}'"
             self.exception = loader.load(entry.exception, what, EXCEPTION)
-        self.mapped = session.pass_materials(pass_)
         self.programs = self._bind(pass_, loader)
 
     def kept(self, work: Work, pixels: NDArray[np.int64]) -> LaunchResult:
@@ -153,6 +160,7 @@ class TracingState:
         """The scene of this frame: materials, lights and parameters resolved."""
         lights = [RayLight(light.name, light.values) for light in frame.lights(pass_)]
         context = camera_context(pass_, frame, target)
+        self.shading.context = context
         materials = []
         for name in self.geometry.materials:
             render = self._render_material(name)
@@ -208,13 +216,13 @@ def _program(node: RayMaterialNode | None, ray_type: str, kind: str) -> Program 
     return None
 
 
-def _loader(session: Session) -> ProgramLoader:
+def _loader(session: Session, provided: dict[tuple[str, str], Callable[..., Any]]) -> ProgramLoader:
     project, options = session.project, session.options
     package = Path(__file__).resolve().parent.parent
     folders = [project.folder, package]
     folders += [Path(lib.file).parent for lib in project.libraries if lib.file]
     folders += [Path(folder) for folder in options.allow_programs]
-    return ProgramLoader(project.folder, TrustRule(tuple(folders), options.no_programs))
+    return ProgramLoader(project.folder, TrustRule(tuple(folders), options.no_programs), provided)
 
 
 def _library_image(project: Project, name: str) -> Path | None:

@@ -155,6 +155,13 @@ class Hits:
             batch.attributes(self._scene, address, self.triangle, self.u, self.v, result)
         return result
 
+    def attribute(self, name: str) -> F32:
+        """A vertex attribute (``normal``, ``uv``, ``tangent``), interpolated, (n, 4); zero where
+        the mesh has none."""
+        values: F32 | None = getattr(self._geometry, name)
+        result = self._interpolate(values, 3)
+        return np.hstack([result, np.zeros((len(self), 1), np.float32)])
+
     @cached_property
     def normal(self) -> F32:
         """Unit shading normals, (n, 3): the face normal where a vertex has none."""

@@ -18,6 +18,7 @@ from nau_py.raytrace.kernels import launch as kernel
 from nau_py.raytrace.kernels import tables as t
 from nau_py.raytrace.programs import BoundProgram
 from nau_py.raytrace.scene import Scene
+from nau_py.raytrace.service import MainThread
 from nau_py.raytrace.tracer import RayCounts, Tracer
 from nau_py.raytrace.vectors import F32
 from nau_py.scene.mesh import F64
@@ -116,6 +117,8 @@ class Work:
     rays: CameraRays
     settings: LaunchSettings
     label: str = "the pass"
+    service: MainThread | None = None
+    """Serves what tiles ask of the main thread while they run."""
 
     def tile(self, items: NDArray[Any], estimate: Estimate, part: slice) -> RayCounts:
         """Trace the samples ``items`` and add them to ``part`` of ``estimate``."""
@@ -214,8 +217,9 @@ def run_launch(
     parts = _parts(items["count"], settings.tile)
     threads = settings.threads or os.cpu_count() or 1
     with ThreadPoolExecutor(max_workers=threads) as pool:
-        tiles = pool.map(lambda p: work.tile(items[p], found.estimate, p), parts)
-        for part, counts in zip(parts, tiles):
+        tiles = [pool.submit(work.tile, items[p], found.estimate, p) for p in parts]
+        done = work.service.results(tiles) if work.service else (t.result() for t in tiles)
+        for part, counts in zip(parts, done):
             found.counts.merge(counts)
             progress(part.stop, len(pixels))
     return found

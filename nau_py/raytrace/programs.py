@@ -119,9 +119,18 @@ class TrustRule:
 
 
 class ProgramLoader:
-    """Loads the programs of one pass: built-ins, and Python modules by path, each once."""
+    """Loads the programs of one pass: built-ins, and Python modules by path, each once.
 
-    def __init__(self, folder: Path, trust: TrustRule) -> None:
+    ``provided``: built-ins by kind and name that somebody else makes.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        trust: TrustRule,
+        provided: dict[tuple[str, str], Callable[..., Any]] | None = None,
+    ) -> None:
+        self._provided = provided or {}
         self._folder = folder
         self._trust = trust
         self._modules: dict[Path, ModuleType] = {}
@@ -134,6 +143,7 @@ class ProgramLoader:
         proc = program.proc or ""
         if program.file == BUILTIN:
             codes, functions = CODES.get(kind, {}), FUNCTIONS.get(kind, {})
+            functions = functions | {n: f for (k, n), f in self._provided.items() if k == kind}
             known = [*codes, *functions]
             if proc not in known:
                 message = f"{label}: there is no built-in '{proc}'; there is {listing(known)}"

@@ -1,0 +1,64 @@
+"""The built-in program ``material``: hands hits to the GLSL program of their material."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from nau_py.raytrace.hits import Hits
+from nau_py.raytrace.service import MainThread
+from nau_py.raytrace.vectors import F32
+
+if TYPE_CHECKING:
+    from nau_py.raster.semantics import DrawContext
+    from nau_py.scene.mapping import PassMaterials
+    from nau_py.scene.mesh import SceneObject
+
+
+class MaterialShading:
+    """A closest-hit program; what it draws is drawn on the main thread, which owns OpenGL."""
+
+    def __init__(
+        self, objects: list[SceneObject], materials: PassMaterials, service: MainThread
+    ) -> None:
+        from nau_py.raster.hits import HitShading
+
+        self._objects = objects
+        self._materials = materials
+        self._service = service
+        self._shading = HitShading()
+        self.context: DrawContext | None = None
+        """The frame's context; set before rays are traced."""
+
+    def __call__(self, hits: Hits) -> F32:
+        colours: Any = self._service.call(self._shade, hits)
+        return np.asarray(colours, np.float32)
+
+    def _shade(self, hits: Hits) -> F32:
+        material, context = self._materials[hits.material.name], self.context
+        assert material is not None
+        assert context is not None
+        geometry = hits.rays.tracer.scene.geometry
+        origin = (hits.rays.origin + geometry.centre).astype(np.float32)
+        position = np.ones((len(hits), 4))
+        position[:, :3] = hits.position
+        normal = np.zeros((len(hits), 4))
+        normal[:, :3] = hits.attribute("normal")[:, :3]
+        attributes = {"texCoord0": hits.attribute("uv"), "tangent": hits.attribute("tangent")}
+        result = np.zeros((len(hits), 4), np.float32)
+        items = geometry.item[hits.triangle]
+        for item in np.unique(items):
+            chosen = items == item
+            model = self._objects[item].matrix
+            inverse = np.linalg.inv(model)
+            own = {name: values[chosen] for name, values in attributes.items()}
+            own["position"] = (position[chosen] @ inverse.T).astype(np.float32)
+            linear = np.eye(4)
+            linear[:3, :3] = model[:3, :3]
+            own["normal"] = (normal[chosen] @ linear).astype(np.float32)
+            result[chosen] = self._shading.shade(
+                context, material, model, own, origin[chosen], hits.direction[chosen]
+            )
+        result[:, 3] = 1.0
+        return result
