@@ -162,7 +162,7 @@ class Tracer:
         batch.sort_by(keys, len(starts) - 1, order, starts)
         going: list[NDArray[Any]] = []
         for key in np.flatnonzero(np.diff(starts)):
-            group = paths[order[starts[key] : starts[key + 1]]]
+            group = _rows(paths, order[starts[key] : starts[key + 1]])
             status, material = int(key) // (depths * materials), int(key) % materials
             if status == t.CANDIDATE:
                 going += self._candidates(group, ray_type, material)
@@ -212,7 +212,8 @@ class Tracer:
         program = self.scene.program(self._type(ray_type), ANY_HIT, material)
         assert program is not None
         accepted = program.accepts(self._hits(paths, ray_type, material), len(paths))
-        kept, ignored = paths[accepted], paths[~accepted]
+        kept = _rows(paths, np.flatnonzero(accepted))
+        ignored = _rows(paths, np.flatnonzero(~accepted))
         kept["status"] = t.SHADE
         batch.pass_all(self.scene.tables.record, ignored)
         closest = self.scene.tables.arrays["closest"][ray_type, material] != 0
@@ -224,3 +225,9 @@ class Tracer:
         rays = self._rays(paths, shadow if shadow >= 0 else ray_type)
         rays.depth += 1
         return self.trace(rays, np.ascontiguousarray(paths["tmax"]), "shadow", 0.0)
+
+
+def _rows(paths: NDArray[Any], index: NDArray[np.int64]) -> NDArray[Any]:
+    """``paths[index]``; whole words are copied much faster than records."""
+    words = paths.view(np.uint64).reshape(len(paths), -1)
+    return np.take(words, index, axis=0).view(t.PATH).reshape(-1)

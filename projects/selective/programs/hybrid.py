@@ -1,4 +1,5 @@
-"""The ray programs of the selective demo, as a user would write them.
+"""The ray programs of the selective demo, as a user would write them; alpha test and visibility are
+built in.
 
 Each one works on a batch: `hits` holds n hits on one material, arrays have the shape (n,) or
 (n, 3), and what is returned is the colour that each ray brings.
@@ -7,7 +8,6 @@ Each one works on a batch: `hits` holds n hits on one material, arrays have the 
 import numpy as np
 
 AMBIENT = 0.3
-ALPHA_THRESHOLD = 0.25
 
 
 def dot(a, b):
@@ -45,19 +45,9 @@ def glass(hits):
     return hits.variables["diffuse"][:3].astype(np.float32) + specular * reflection
 
 
-def alpha_test(hits):
-    """Any hit: True keeps the hit, False lets the ray through the hole."""
-    return hits.texture(0)[:, 3] > ALPHA_THRESHOLD
-
-
 def sky(rays):
     """Miss: the clear colour."""
     return rays.clear_color[:3]
-
-
-def lit(rays):
-    """Miss of a shadow ray: the light is seen."""
-    return np.ones((len(rays), 3))
 
 
 def exception(launch):
