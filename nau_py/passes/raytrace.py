@@ -97,6 +97,11 @@ class RaytraceClass:
         record.est_error = result.est_error
         record.nonfinite = result.counts.nonfinite
         record.blame = result.counts.blamed(width)
+        outliers = int(result.estimate.unreliable.sum())
+        if outliers:
+            record.notes.append(
+                f"in {outliers} pixels one sample outweighs all others: est_error is uncertain"
+            )
         if result.counts.cut_layers:
             record.notes.append(
                 f"{result.counts.cut_layers} rays met more ignored hits than the limit"

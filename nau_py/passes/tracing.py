@@ -23,7 +23,7 @@ from nau_py.passes.material_shading import MaterialShading
 from nau_py.paths import resolve as resolve_path
 from nau_py.raster.semantics import resolve
 from nau_py.raytrace.accel import Accelerator
-from nau_py.raytrace.geometry import RayGeometry, gather
+from nau_py.raytrace.geometry import PRECISION, RayGeometry, gather, precision
 from nau_py.raytrace.hits import RayLight, RayMaterial
 from nau_py.raytrace.launch import Estimate, LaunchResult, Work
 from nau_py.raytrace.programs import ProgramLoader, TrustRule
@@ -51,6 +51,7 @@ class TracingState:
     def __init__(self, pass_: RaytracePass, session: Session) -> None:
         self.session = session
         self.geometry: RayGeometry = gather(session.world.objects(pass_.scene_names))
+        self._report_faces(pass_)
         self.accelerator: Accelerator = Accelerator(self.geometry)
         self.texels = TexelStore()
         self._kept: tuple[bytes, Estimate] | None = None
@@ -74,6 +75,26 @@ class TracingState:
             what = f"{label}, exception program '{entry.exception.proc}'"
             self.exception = loader.load(entry.exception, what, EXCEPTION)
         self.programs = self._bind(pass_, loader)
+
+    def _report_faces(self, pass_: RaytracePass) -> None:
+        """Say which faces rays leave out, and where precision is short."""
+        found = self.session.resources.diagnostics
+        dropped = self.geometry.dropped
+        for reason, count in dropped.counts.items():
+            name, face = dropped.first[reason]
+            message = (
+                f"pass '{pass_.name}': {count} faces are {reason} and left out of ray tracing; the "
+                f"first is face {face} of '{Path(name).name}'"
+            )
+            found.append(warning("M005", pass_.location, message))
+        for item in self.session.world.objects(pass_.scene_names):
+            step, feature = precision(item)
+            if step > PRECISION * feature:
+                message = (
+                    f"pass '{pass_.name}': the coordinates of '{Path(item.name).name}' are rounded "
+                    f"to {step:g}, its smallest triangle measures {feature:g}"
+                )
+                found.append(warning("M006", pass_.location, message))
 
     def kept(self, work: Work, pixels: NDArray[np.int64]) -> LaunchResult:
         """What earlier frames sampled, if camera, mask, lights and materials are as they were."""
@@ -277,4 +298,7 @@ def store_colours(target: Target, pixels: NDArray[np.int64], colours: NDArray[np
     if np.issubdtype(dtype, np.integer) and not texture_.format.integer:
         scale = np.float32(np.iinfo(np.dtype(dtype)).max)
         shaped = np.rint(np.clip(shaped, 0, 1) * scale)
+    elif dtype == np.float16:  # saturates: infinity would spread through blurs
+        most = np.finfo(np.float16).max
+        shaped = np.clip(shaped, -most, most)
     texture_.write(shaped)

@@ -13,6 +13,8 @@ from nau_py.raytrace.vectors import F32
 from nau_py.scene.mesh import F64, SceneObject, transform_mesh
 
 I32 = NDArray[np.int32]
+PRECISION = 1e-4
+"""Rounding of coordinates, in parts of the smallest feature, from which a warning is due."""
 FAR_FACTOR = 4.0
 """A scene is moved to the origin where its centre lies further off than this many half sizes."""
 
@@ -158,6 +160,22 @@ def gather(objects: list[SceneObject], moving: Collection[str] = ()) -> RayGeome
         len(faces) - first_moving,
         dropped,
     )
+
+
+def precision(item: SceneObject) -> tuple[float, float]:
+    """How much float32 rounds the largest coordinate of an object, and the size of its smallest
+    triangle with an area (its longest side), object space."""
+    points = item.mesh.positions[:, :3].astype(np.float64)
+    faces = [g.indices.reshape(-1, 3) for g in item.mesh.groups if len(g.indices)]
+    if item.mesh.primitive != "TRIANGLES" or not faces:
+        return 0.0, 1.0
+    corners = points[np.concatenate(faces)]
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    sides = sides[np.isfinite(sides) & (sides > 0)]
+    largest = np.abs(corners[np.isfinite(corners)]).max(initial=0.0)
+    if not len(sides):
+        return 0.0, 1.0
+    return float(np.spacing(np.float32(largest))), float(sides.min())
 
 
 def _centre(points: F64, faces: I32) -> F64:

@@ -24,6 +24,8 @@ from nau_py.raytrace.vectors import F32
 from nau_py.scene.mesh import F64
 
 I64 = NDArray[np.int64]
+OUTLIER = 0.9
+"""Share of a pixel's squared deviations from which one sample counts as an outlier."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +45,14 @@ class LaunchSettings:
 @dataclass(slots=True)
 class Estimate:
     """Running means of n pixels: ``mean`` RGBA float64 (n, 4), ``squares`` float64 (n, 3) sums of
-    squared deviations, ``number`` int64 (n,) of finite samples, ``taken`` of all."""
+    squared deviations, ``number`` int64 (n,) of finite samples, ``taken`` of all, ``largest``
+    float64 (n,) what one sample added most to the squares."""
 
     mean: F64
     squares: F64
     number: I64
     taken: I64
+    largest: F64
 
     @classmethod
     def empty(cls, count: int) -> Estimate:
@@ -57,7 +61,14 @@ class Estimate:
             np.zeros((count, 3)),
             np.zeros(count, np.int64),
             np.zeros(count, np.int64),
+            np.zeros(count),
         )
+
+    @property
+    def unreliable(self) -> NDArray[np.bool_]:
+        """Pixels whose variance rests on one sample: their error estimate says little, (n,)."""
+        total = self.squares.sum(axis=1)
+        return np.asarray((self.number >= 8) & (self.largest > OUTLIER * total) & (total > 0))
 
     @property
     def error(self) -> F64:
@@ -145,6 +156,7 @@ class Work:
             estimate.mean[part],
             estimate.squares[part],
             estimate.number[part],
+            estimate.largest[part],
             bad_samples,
         )
         tracer.dropped(self.label, int(bad_samples[0]), int(bad_samples[1]))

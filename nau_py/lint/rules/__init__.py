@@ -7,6 +7,7 @@ def families() -> None:
         dataflow,
         files,
         names,
+        numerics,
         passes,
         raytrace,
         references,

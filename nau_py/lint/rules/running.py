@@ -202,6 +202,24 @@ for row in (
         "map_Kd wood.png",
     ),
     (
+        "M005",
+        WARNING,
+        "Faces left out of ray tracing",
+        "They have no area, are the same as later ones, or lie where no ray can hit them well. "
+        "Rasterisation still draws them.",
+        "f 1 1 2",
+        "f 1 2 3",
+    ),
+    (
+        "M006",
+        WARNING,
+        "Coordinates too large for their features",
+        "Single precision rounds the coordinates by more than a ten-thousandth of the smallest "
+        "triangle: shapes and shadows there are uncertain.",
+        "v 10000000.1 0 0",
+        "v 0.1 0 0, and TRANSLATE for the scene",
+    ),
+    (
         "P010",
         ERROR,
         "Render target incomplete",

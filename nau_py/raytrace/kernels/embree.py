@@ -65,7 +65,8 @@ def nearest(scene: Any, ray: int, origin: V3, direction: V3, tmax: float) -> int
         rtcIntersect1(scene.moving, ray, 0)
         if i32(ray, 18) != INVALID:
             found = i32(ray, 17) + scene.first_moving
-    return found
+    # beyond about 1e18 Embree's distances overflow: such a hit is none
+    return found if f32(ray, 8) < INFINITE else -1
 
 
 @inner

@@ -190,9 +190,11 @@ def accumulate(
     mean: NDArray[np.float64],
     squares: NDArray[np.float64],
     number: NDArray[np.int64],
+    largest: NDArray[np.float64],
     bad: NDArray[np.int64],
 ) -> None:
-    """Add the samples of each pixel to its mean and sum of squared deviations.
+    """Add the samples of each pixel to its mean and sum of squared deviations, and keep the
+    largest one's share.
 
     Welford, *Note on a Method for Calculating Corrected Sums of Squares and Products*, 1962.
     Samples that are not finite are dropped: ``bad`` holds how many, and the first one's pixel.
@@ -208,8 +210,12 @@ def accumulate(
                 bad[0] += 1
                 continue
             number[i] += 1
+            square = 0.0
             for k in range(4):
                 delta = float(c[k]) - mean[i, k]
                 mean[i, k] += delta / number[i]
                 if k < 3:
-                    squares[i, k] += delta * (float(c[k]) - mean[i, k])
+                    added = delta * (float(c[k]) - mean[i, k])
+                    squares[i, k] += added
+                    square += added
+            largest[i] = max(largest[i], square)
