@@ -47,6 +47,7 @@ class RaytraceClass:
         frame.rect = rect
         process(pass_.preProcess, frame)
         state = tracing_state(pass_, frame.session)
+        state.update(pass_)
         inputs = read_inputs(pass_, frame)
         mask = read_mask(pass_, inputs)
         width, height = target.width, target.height

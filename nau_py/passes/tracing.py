@@ -50,9 +50,12 @@ class TracingState:
 
     def __init__(self, pass_: RaytracePass, session: Session) -> None:
         self.session = session
-        self.geometry: RayGeometry = gather(session.world.objects(pass_.scene_names))
+        self.geometry: RayGeometry = gather(
+            session.world.objects(pass_.scene_names), session.world.moved
+        )
         self._report_faces(pass_)
         self.accelerator: Accelerator = Accelerator(self.geometry)
+        self._moves, self._moved = session.world.moves, session.world.moved
         self.texels = TexelStore()
         self._kept: tuple[bytes, Estimate] | None = None
         self._textures: dict[TextureBinding, RayTexture | None] = {}
@@ -75,6 +78,20 @@ class TracingState:
             what = f"{label}, exception program '{entry.exception.proc}'"
             self.exception = loader.load(entry.exception, what, EXCEPTION)
         self.programs = self._bind(pass_, loader)
+
+    def update(self, pass_: RaytracePass) -> None:
+        """Follow what was moved since the last frame: only what moves is built anew."""
+        world = self.session.world
+        if world.moves == self._moves:
+            return
+        objects, centre = world.objects(pass_.scene_names), self.geometry.centre
+        self.geometry = gather(objects, world.moved, centre)
+        if world.moved == self._moved:
+            self.accelerator.rebuild_moving(self.geometry)
+        else:
+            self.accelerator = Accelerator(self.geometry)
+        self._moves, self._moved = world.moves, world.moved
+        self._kept = None
 
     def _report_faces(self, pass_: RaytracePass) -> None:
         """Say which faces rays leave out, and where precision is short."""

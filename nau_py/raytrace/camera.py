@@ -24,11 +24,12 @@ def camera_record(camera: CameraState, rect: Rect, centre: F64 | None = None) ->
     made["position"] = camera.position - (0.0 if centre is None else centre)
     made["forward"], made["right"], made["up"] = camera.forward, camera.right, camera.true_up
     if camera.ortho:
-        made["low"], made["high"] = (v["LEFT"], v["BOTTOM"]), (v["RIGHT"], v["TOP"])
+        low, high = np.array([v["LEFT"], v["BOTTOM"]]), np.array([v["RIGHT"], v["TOP"]])
     else:
-        width, height = camera.half_extent(rect.aspect)
-        made["low"], made["high"] = (-width, -height), (width, height)
-    made["corner"], made["size"] = (rect.x, rect.y), (rect.width, rect.height)
+        high = np.array(camera.half_extent(rect.aspect))
+        low = -high
+    step = (high - low) / [rect.width, rect.height]
+    made["base"], made["step"] = low - np.array([rect.x, rect.y]) * step, step
     made["near"], made["ortho"] = v["NEAR"], camera.ortho
     made["aperture"] = v["APERTURE"]
     made["focus"] = v["FOCUS_DISTANCE"]

@@ -94,10 +94,13 @@ def _duplicates(vertices: F32, triangles: I32) -> NDArray[np.bool_]:
     return repeated
 
 
-def gather(objects: list[SceneObject], moving: Collection[str] = ()) -> RayGeometry:
+def gather(
+    objects: list[SceneObject], moving: Collection[str] = (), centre: F64 | None = None
+) -> RayGeometry:
     """The triangles of ``objects`` with their transforms applied; other primitives are left out.
 
-    ``moving``: names of objects that change place. Faces that no ray can hit well are left out and
+    ``moving``: names of objects that change place; ``centre``: what to move the scene by, chosen
+    if None. Faces that no ray can hit well are left out and
     listed in ``dropped``: without area, not finite, too large, or the same as a later one.
     """
     objects = [o for o in objects if o.mesh.primitive == "TRIANGLES"]
@@ -136,7 +139,7 @@ def gather(objects: list[SceneObject], moving: Collection[str] = ()) -> RayGeome
         return RayGeometry(empty, none, zero, [], dropped=dropped)
     everywhere = np.concatenate(points)
     faces = np.concatenate(triangles)
-    centre = _centre(everywhere, faces)
+    centre = _centre(everywhere, faces) if centre is None else centre
     with np.errstate(over="ignore"):
         vertices = (everywhere - centre).astype(np.float32)
     owner, item_of = np.concatenate(owners), np.concatenate(items)

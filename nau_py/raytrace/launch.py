@@ -55,18 +55,22 @@ class Estimate:
     largest: F64
 
     @classmethod
-    def empty(cls, count: int) -> Estimate:
+    def empty(cls, count: int, single: bool = False) -> Estimate:
+        """Of ``count`` pixels without a sample; ``single``: they get one, and no variance."""
+        spread = 0 if single else count
         return cls(
             np.zeros((count, 4)),
-            np.zeros((count, 3)),
+            np.zeros((spread, 3)),
             np.zeros(count, np.int64),
             np.zeros(count, np.int64),
-            np.zeros(count),
+            np.zeros(spread),
         )
 
     @property
     def unreliable(self) -> NDArray[np.bool_]:
         """Pixels whose variance rests on one sample: their error estimate says little, (n,)."""
+        if len(self.squares) < len(self.number):
+            return np.zeros(len(self.number), bool)
         total = self.squares.sum(axis=1)
         return np.asarray((self.number >= 8) & (self.largest > OUTLIER * total) & (total > 0))
 
@@ -74,6 +78,8 @@ class Estimate:
     def error(self) -> F64:
         """Estimated standard error of each pixel's colour, root mean square over RGB, float64
         (n,); infinite below two samples."""
+        if len(self.squares) < len(self.number):
+            return np.full(len(self.number), np.inf)
         n = self.number.astype(np.float64)
         with np.errstate(divide="ignore", invalid="ignore"):
             variance = (self.squares[:, 0] + self.squares[:, 1] + self.squares[:, 2]) / 3
@@ -172,17 +178,14 @@ class Work:
         return kernel.JITTER if self.settings.sampler == "RANDOM" else kernel.SOBOL
 
     def _compiled(self, tracer: Tracer, items: NDArray[Any], radiance: F32) -> None:
+        lens, rule = int(self.generate.code == THIN_LENS), self._rule()
+        side = max(round(self.settings.samples**0.5), 1)
+        if not self.scene.tables.record["asks_python"][0]:
+            tracer.march(self.camera, (lens, rule, side), self.width, items, radiance)
+            return
         queue = np.empty(len(radiance), t.PATH)
-        kernel.generate(
-            self.camera,
-            int(self.generate.code == THIN_LENS),
-            self._rule(),
-            max(round(self.settings.samples**0.5), 1),
-            np.uint32(self.scene.settings.seed & 0xFFFFFFFF),
-            self.width,
-            items,
-            queue,
-        )
+        seed = np.uint32(self.scene.settings.seed & 0xFFFFFFFF)
+        kernel.generate(self.camera, lens, rule, side, seed, self.width, items, queue)
         tracer.follow(queue, 0, radiance)
 
     def _launch(self, tracer: Tracer, items: NDArray[Any]) -> Launch:
@@ -219,7 +222,8 @@ def run_launch(
     and number of threads.
     """
     settings = work.settings
-    found = result or LaunchResult(Estimate.empty(len(pixels)))
+    single = settings.samples == 1 and samples is None
+    found = result or LaunchResult(Estimate.empty(len(pixels), single))
     items = np.zeros(len(pixels), kernel.ITEM)
     items["pixel"] = pixels
     items["first"] = found.estimate.taken

@@ -12,7 +12,7 @@ from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.hits import Hits, Rays
 from nau_py.raytrace.kernels import batch
 from nau_py.raytrace.kernels import tables as t
-from nau_py.raytrace.kernels.advance import advance
+from nau_py.raytrace.kernels.advance import advance, march
 from nau_py.raytrace.kernels.embree import RAY_FLOATS
 from nau_py.raytrace.kernels.launch import enqueue
 from nau_py.raytrace.programs import BoundProgram
@@ -127,14 +127,31 @@ class Tracer:
     def _return(self, queue: NDArray[Any]) -> None:
         self._queues.append(queue if queue.base is None else queue.base)
 
-    def follow(
-        self, queue: NDArray[Any], ray_type: int, radiance: F32, name: str = "primary"
-    ) -> None:
-        """Follow the paths of ``queue`` to their ends; add what they bring to ``radiance``."""
+    def _tile(self, radiance: F32) -> NDArray[Any]:
+        """The record of addresses that kernels work with."""
         tile = np.zeros(1, t.TILE)
         tile["ray"] = -(-self._ray.ctypes.data // 16) * 16  # Embree wants 16-byte alignment
         tile["counts"], tile["stack"] = self._counters.ctypes.data, self._stack.ctypes.data
         tile["radiance"] = radiance.ctypes.data
+        return tile
+
+    def march(
+        self,
+        camera: NDArray[Any],
+        rule: tuple[int, int, int],
+        width: int,
+        items: NDArray[Any],
+        radiance: F32,
+    ) -> None:
+        """Samples of ``items`` by compiled programs alone; ``rule``: lens, sampler, strata."""
+        record, current = self.scene.tables.record, np.zeros(1, t.PATH)
+        march(record, camera, *rule, width, items, self._tile(radiance), current)
+
+    def follow(
+        self, queue: NDArray[Any], ray_type: int, radiance: F32, name: str = "primary"
+    ) -> None:
+        """Follow the paths of ``queue`` to their ends; add what they bring to ``radiance``."""
+        tile = self._tile(radiance)
         deferred = self._borrow(len(queue) + 1)
         current = np.zeros(1, t.PATH)
         while tile["next"][0] < len(queue):

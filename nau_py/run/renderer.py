@@ -160,6 +160,13 @@ class Renderer:
         )
         return Frame(frame, image, targets, report)
 
+    def move(self, name: str, matrix: NDArray[Any]) -> None:
+        """Put the objects called ``name`` elsewhere from the next frame on.
+
+        ``matrix``: object to world, (4, 4), column vectors. Raises ValueError for an unknown name.
+        """
+        self.session.world.move(name, matrix)
+
     def close(self) -> None:
         """Free the GPU objects. Rendering again starts from frame 0."""
         if self._session is not None:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from nau_py.diagnostic import Diagnostic
+import numpy as np
+
+from nau_py.diagnostic import Diagnostic, listing
 from nau_py.model.linked import Project
 from nau_py.scene.build import SceneBuilder
 from nau_py.scene.camera import CameraState, camera_state
 from nau_py.scene.lights import LightState, light_state
 from nau_py.scene.mapping import MaterialTable
 from nau_py.scene.material import default_material, from_model
-from nau_py.scene.mesh import SceneObject
+from nau_py.scene.mesh import F64, SceneObject
 from nau_py.scene.viewport import Rect, viewport_rect
 
 DEFAULT_NAME = "__nauDefault"
@@ -35,6 +37,10 @@ class World:
         for name in builder.new_materials:
             self.materials.add(default_material(project, name))
         self.diagnostics: list[Diagnostic] = builder.diagnostics
+        self.moved: frozenset[str] = frozenset()
+        """Names of objects that have been moved."""
+        self.moves = 0
+        """How often anything was moved."""
         self._cameras: dict[str, CameraState] = {}
         for camera in project.assets.cameras:
             if camera.name and camera.name not in self._cameras:
@@ -50,6 +56,23 @@ class World:
     def objects(self, names: list[str]) -> list[SceneObject]:
         """The objects of the named scenes, in that order."""
         return [o for name in names for o in self.scenes.get(name, [])]
+
+    def move(self, name: str, matrix: F64) -> None:
+        """Put the objects called ``name`` where ``matrix`` says: object to world, (4, 4).
+
+        Raises ValueError for a name that no object has, or a matrix that is none.
+        """
+        found = [o for objects in self.scenes.values() for o in objects if o.name == name]
+        wide = np.asarray(matrix, np.float64)
+        if not found:
+            known = sorted({o.name for objects in self.scenes.values() for o in objects})
+            raise ValueError(f"no object is called '{name}'; there is {listing(known)}")
+        if wide.shape != (4, 4) or not np.isfinite(wide).all():
+            raise ValueError(f"object '{name}': a finite matrix of shape (4, 4) is expected")
+        for item in found:
+            item.matrix = wide
+        self.moved |= {name}
+        self.moves += 1
 
     def camera(self, name: str | None) -> CameraState:
         return self._cameras.get(name or DEFAULT_NAME, self._cameras[DEFAULT_NAME])

@@ -59,7 +59,7 @@ def sample_points(rule: int, count: int, pixel: int = 123) -> np.ndarray:  # typ
     """Where the samples of a pixel lie inside it, float64 (count, 2)."""
     camera = np.zeros(1, CAMERA)  # orthographic, one world unit a pixel
     camera["forward"], camera["right"], camera["up"] = (0, 0, -1), (1, 0, 0), (0, 1, 0)
-    camera["high"] = camera["size"] = (1000, 1000)
+    camera["step"] = (1, 1)
     camera["ortho"] = 1
     items = np.zeros(1, ITEM)
     items["pixel"], items["count"] = pixel, count

@@ -25,6 +25,7 @@ from nau_py.raytrace.kernels.codes import (
 )
 from nau_py.raytrace.kernels.embree import hit, nearest
 from nau_py.raytrace.kernels.jit import V3, inner, kernel
+from nau_py.raytrace.kernels.launch import start
 from nau_py.raytrace.kernels.lights import INVERSE_PI, emitter_point, power
 from nau_py.raytrace.kernels.memory import f32, f64, i8, i32, i64, put_f32, put_i64
 from nau_py.raytrace.kernels.sampling import sobol2
@@ -329,3 +330,33 @@ def advance(
             tile.waiting = start
             return
     tile.next = queue.shape[0]
+
+
+@kernel
+def march(
+    scenes: NDArray[Any],
+    cameras: NDArray[Any],
+    lens: int,
+    rule: int,
+    side: int,
+    width: int,
+    items: NDArray[Any],
+    tiles: NDArray[Any],
+    current: NDArray[Any],
+) -> None:
+    """``generate`` and ``advance`` in one, for programs that are all compiled: no queue."""
+    scene, tile, path = scenes[0], tiles[0], current[0]
+    at = 0
+    for i in range(items.shape[0]):
+        flat, first = int(items[i].pixel), int(items[i].first)
+        for k in range(items[i].count):
+            start(cameras[0], lens, rule, side, scene.seed, width, flat, first + k, at, path)
+            at += 1
+            tile.top = 0
+            while follow(scene, tile, 0, path):
+                pass
+            while tile.top > 0:
+                tile.top -= 1
+                copy_path(path, path_at(tile.stack, tile.top))
+                while follow(scene, tile, 0, path):
+                    pass

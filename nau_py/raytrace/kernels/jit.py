@@ -48,6 +48,5 @@ def inner(function: F) -> F:
         fastmath=False,
         no_cpython_wrapper=True,
         no_cfunc_wrapper=True,
-        forceinline=True,
     )(function)
     return cast(F, compiled)

@@ -27,10 +27,8 @@ CAMERA = np.dtype(
         ("forward", "f8", 3),
         ("right", "f8", 3),
         ("up", "f8", 3),
-        ("low", "f8", 2),
-        ("high", "f8", 2),
-        ("corner", "f8", 2),
-        ("size", "f8", 2),
+        ("base", "f8", 2),
+        ("step", "f8", 2),
         ("near", "f8"),
         ("aperture", "f8"),
         ("focus", "f8"),
@@ -38,14 +36,13 @@ CAMERA = np.dtype(
     ],
     align=True,
 )
-"""``low`` and ``high``: extent of the image plane, at distance 1 for perspective. ``corner`` and
-``size``: the viewport, pixels. ``aperture``: radius of the lens; ``focus``: distance along
+"""``base`` and ``step``: image plane coordinates (at distance 1 for perspective) of the target's
+lower left corner, and the size of a pixel there. ``aperture``: radius of the lens; ``focus``: distance along
 ``forward`` at which it is sharp."""
 
 _position, _forward = getter(CAMERA, "position"), getter(CAMERA, "forward")
 _right, _up = getter(CAMERA, "right"), getter(CAMERA, "up")
-_low, _high = getter(CAMERA, "low"), getter(CAMERA, "high")
-_corner, _size = getter(CAMERA, "corner"), getter(CAMERA, "size")
+_base, _step = getter(CAMERA, "base"), getter(CAMERA, "step")
 
 CENTRE, JITTER, STRATA, SOBOL = range(4)
 """Where the samples of a pixel lie."""
@@ -59,11 +56,8 @@ def camera_ray(camera: Any, x: float, y: float, lx: float, ly: float) -> tuple[V
 
     (lx, ly): a point of the unit disk on the lens; Kolb et al. 1995, the thin lens.
     """
-    corner, size, low, high = _corner(camera), _size(camera), _low(camera), _high(camera)
-    a = (x - corner[0]) / size[0]
-    b = (y - corner[1]) / size[1]
-    sx = low[0] + a * (high[0] - low[0])
-    sy = low[1] + b * (high[1] - low[1])
+    base, step = _base(camera), _step(camera)
+    sx, sy = base[0] + x * step[0], base[1] + y * step[1]
     forward, right, up = _forward(camera), _right(camera), _up(camera)
     across = plus(scaled(right, sx), scaled(up, sy))
     position = _position(camera)
@@ -111,6 +105,45 @@ def reset(path: Any) -> None:
     path.status = TRACE
 
 
+@inner
+def start(
+    camera: Any,
+    lens: int,
+    rule: int,
+    side: int,
+    seed: np.uint32,
+    width: int,
+    flat: int,
+    number: int,
+    at: int,
+    path: Any,
+) -> None:
+    """Make ``path`` sample ``number`` of the pixel ``flat``, for result ``at``. ``lens``: 1 for the
+    thin lens, 0 for a pinhole; ``rule``: where samples lie; ``side``: strata a side."""
+    pixel, sample = np.uint32(flat), np.uint32(number)
+    reset(path)
+    dx, dy = 0.5, 0.5
+    if rule == SOBOL:
+        dx, dy = sobol2(seed, pixel, sample, np.uint32(0))
+    elif rule != CENTRE:
+        dx = uniform(seed, pixel, sample, np.uint32(0))
+        dy = uniform(seed, pixel, sample, np.uint32(1))
+        if rule == STRATA:
+            dx = min((number % side + dx) / side, 0.99999994)
+            dy = min((number // side % side + dy) / side, 0.99999994)
+    lx, ly = 0.0, 0.0
+    if lens:
+        a, b = sobol2(seed, pixel, sample, np.uint32(2))
+        lx, ly = on_disk(a, b)
+    row = int(flat / width)  # exact below 2^53, and faster than integer division
+    o, d = camera_ray(camera, flat - row * width + dx, row + dy, lx, ly)
+    set_origin(path, o)
+    set_heading(path, d)
+    path.index = at
+    path.pixel = pixel
+    path.sample = sample
+
+
 @kernel
 def generate(
     cameras: Any,
@@ -122,36 +155,12 @@ def generate(
     items: Any,
     queue: NDArray[Any],
 ) -> None:
-    """A path for every sample of ``items``. ``lens``: 1 for the thin lens, 0 for a pinhole."""
+    """A path for every sample of ``items``: see ``start``."""
     at = 0
-    camera = cameras[0]
     for i in range(items.shape[0]):
-        item = items[i]
-        pixel = np.uint32(item.pixel)
-        column, row = float(item.pixel % width), float(item.pixel // width)
-        for k in range(item.count):
-            sample = np.uint32(item.first + k)
-            path = queue[at]
-            reset(path)
-            dx, dy = 0.5, 0.5
-            if rule == SOBOL:
-                dx, dy = sobol2(seed, pixel, sample, np.uint32(0))
-            elif rule != CENTRE:
-                dx = uniform(seed, pixel, sample, np.uint32(0))
-                dy = uniform(seed, pixel, sample, np.uint32(1))
-                if rule == STRATA:
-                    dx = min((sample % side + dx) / side, 0.99999994)
-                    dy = min((sample // side % side + dy) / side, 0.99999994)
-            lx, ly = 0.0, 0.0
-            if lens:
-                a, b = sobol2(seed, pixel, sample, np.uint32(2))
-                lx, ly = on_disk(a, b)
-            o, d = camera_ray(camera, column + dx, row + dy, lx, ly)
-            set_origin(path, o)
-            set_heading(path, d)
-            path.index = at
-            path.pixel = pixel
-            path.sample = sample
+        flat, first = int(items[i].pixel), int(items[i].first)
+        for k in range(items[i].count):
+            start(cameras[0], lens, rule, side, seed, width, flat, first + k, at, queue[at])
             at += 1
 
 
@@ -197,9 +206,11 @@ def accumulate(
     largest one's share.
 
     Welford, *Note on a Method for Calculating Corrected Sums of Squares and Products*, 1962.
-    Samples that are not finite are dropped: ``bad`` holds how many, and the first one's pixel.
+    With empty ``squares`` only means are kept. Samples that are not finite are dropped: ``bad``
+    holds how many, and the first one's pixel.
     """
     at = 0
+    many = squares.shape[0] > 0
     for i in range(items.shape[0]):
         for _ in range(items[i].count):
             c = radiance[at]
@@ -214,8 +225,9 @@ def accumulate(
             for k in range(4):
                 delta = float(c[k]) - mean[i, k]
                 mean[i, k] += delta / number[i]
-                if k < 3:
+                if many and k < 3:
                     added = delta * (float(c[k]) - mean[i, k])
                     squares[i, k] += added
                     square += added
-            largest[i] = max(largest[i], square)
+            if many:
+                largest[i] = max(largest[i], square)

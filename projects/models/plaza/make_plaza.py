@@ -27,6 +27,7 @@ class Builder:
         self.vt: dict[str, int] = {}
         self.vn: dict[str, int] = {}
         self.faces: dict[tuple[str, str], list[str]] = {}
+        self.placed: set[frozenset[str]] = set()
         self.triangles = 0
 
     @staticmethod
@@ -43,6 +44,10 @@ class Builder:
             f"{self._key(self.v, a, 4)}/{self._key(self.vt, b, 4)}/{self._key(self.vn, c, 3)}"
             for a, b, c in zip(p, uvs, normals)
         ]
+        key = frozenset(corner.split("/")[0] for corner in corners)
+        if key in self.placed:  # a second face in the same place would be seen by rays only
+            return
+        self.placed.add(key)
         self.faces.setdefault((group, material), []).append("f " + " ".join(corners))
         self.triangles += len(p) - 2
 
