@@ -168,10 +168,10 @@ def gather(
 def precision(item: SceneObject) -> tuple[float, float]:
     """How much float32 rounds the largest coordinate of an object, and the size of its smallest
     triangle with an area (its longest side), object space."""
+    if item.mesh.triangle_count == 0:
+        return 0.0, 1.0
     points = item.mesh.positions[:, :3].astype(np.float64)
     faces = [g.indices.reshape(-1, 3) for g in item.mesh.groups if len(g.indices)]
-    if item.mesh.primitive != "TRIANGLES" or not faces:
-        return 0.0, 1.0
     corners = points[np.concatenate(faces)]
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
     sides = sides[np.isfinite(sides) & (sides > 0)]

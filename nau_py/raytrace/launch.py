@@ -235,9 +235,13 @@ def run_launch(
     with ThreadPoolExecutor(max_workers=threads) as pool:
         tiles = [pool.submit(work.tile, items[p], found.estimate, p) for p in parts]
         done = work.service.results(tiles) if work.service else (t.result() for t in tiles)
-        for part, counts in zip(parts, done):
-            found.counts.merge(counts)
-            progress(part.stop, len(pixels))
+        try:
+            for part, counts in zip(parts, done):
+                found.counts.merge(counts)
+                progress(part.stop, len(pixels))
+        except BaseException:  # an error, or Ctrl-C: tiles that have not begun never do
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     return found
 
 

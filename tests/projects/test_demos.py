@@ -171,3 +171,11 @@ def test_another_seed_is_another_picture_of_the_same_scene(selective: nau_py.Fra
     expected = np.sqrt(2) * passes(selective)["trace"]["est_error"]
     rms = np.sqrt(((a[chosen][:, :3] - b[chosen][:, :3]) ** 2).mean())
     assert rms < 1.3 * expected
+
+
+def test_the_twin_that_traces_everything_agrees_inside_the_mask(selective: nau_py.Frame) -> None:
+    """Samples are keyed by pixel: what the mask selects has the same bits, so the same error."""
+    project = nau_py.load(PROJECTS / "selective" / "full.xml")
+    full = nau_py.Renderer(project, size=SIZE).render().targets["Hybrid::radiance"]
+    chosen = mask(selective)
+    np.testing.assert_array_equal(full[chosen], selective.targets["Hybrid::radiance"][chosen])

@@ -190,3 +190,61 @@ def test_declarations_are_taken_out() -> None:
     found, types = without_declarations(text, {"b", "c", "n"})
     assert types == {"b": "mat4", "c": "vec4", "n": "mat3"}
     assert found == "uniform mat4 a;\n // uniform\n\nin vec3 b2;"
+
+
+TWIN = """\
+<project name="Twin" width="128" height="128"><assets>
+  <scenes><scene name="S" type="Scene"><geometry name="ball" type="SPHERE" material="m" SLICES="96"
+    STACKS="48"><SCALE x="1.2" y="0.8" z="1" /><TRANSLATE x="0.1" y="0" z="0" /></geometry></scene></scenes>
+  <lights><light name="Sun"><DIRECTION x="-0.5" y="-0.6" z="-0.8" />
+    <COLOR r="1" g="0.9" b="0.8" a="1" /></light></lights>
+  <cameras><camera name="C"><projection TYPE="PERSPECTIVE" FOV="45" NEAR="0.1" FAR="50" />
+    <POSITION x="0" y="0" z="3" /></camera></cameras>
+  <materialLibs><materialLib filename="lib.mlib" /><materialLib filename="{phong}" /></materialLibs>
+</assets><pipelines>
+  <pipeline name="Traced"><pass name="trace" class="raytrace"><camera name="C" />
+    <scenes><scene name="S" /></scenes><lights><light name="Sun" /></lights>
+    <renderTarget name="rt" fromLibrary="L" />
+    <materialMaps><map fromMaterial="m" toLibrary="L" toMaterial="m" /></materialMaps>
+    <rtEntryPoint><rayGen file="builtin" proc="pinhole" /></rtEntryPoint>
+    <rtDefaultMaterial><rayType name="R">
+      <rtProgram type="CLOSEST_HIT" file="builtin" proc="{name}" /></rayType></rtDefaultMaterial>
+  </pass></pipeline>
+  <pipeline name="Raster"><pass name="draw" class="default"><camera name="C" />
+    <scenes><scene name="S" /></scenes><lights><light name="Sun" /></lights>
+    <renderTarget name="rt" fromLibrary="L" />
+    <materialMaps><map fromMaterial="m" toLibrary="L" toMaterial="{twin}" /></materialMaps>
+  </pass></pipeline>
+</pipelines></project>
+"""
+
+
+@pytest.mark.parametrize("name", ["lambert", "phong", "blinn_phong"])
+def test_compiled_shading_is_that_of_its_glsl_twin(folder: Folder, name: str) -> None:
+    """Traced by the compiled program, rasterised by ``materials/phong.mlib``: 1/255 at most."""
+    shine = '<SPECULAR r="0.6" g="0.5" b="0.4" a="1" /><SHININESS value="24" />'
+    values = (ROOT / "materials" / "phong.mlib").read_text().split("<values>")[1]
+    values = values.split("</values>")[0]
+    shader = "phong" if name == "lambert" else name
+    folder.write(
+        "lib.mlib",
+        '<materialLib name="L"><renderTargets><renderTarget name="rt"><SIZE width="128" height="128"/>'
+        '<colors><color name="out" internalFormat="RGBA32F" /></colors></renderTarget>'
+        f'</renderTargets><shaders><shader name="{shader}" vs="{ROOT}/materials/shaders/phong.vert" '
+        f'ps="{ROOT}/materials/shaders/{shader}.frag" /></shaders><materials><material name="m">'
+        f'<color><DIFFUSE r="0.7" g="0.4" b="0.3" a="1" />{"" if name == "lambert" else shine}'
+        f'</color><shader name="{shader}"><values>{values}</values></shader></material></materials>'
+        "</materialLib>",
+    )
+    folder.write(
+        "project.xml", TWIN.format(phong=ROOT / "materials" / "phong.mlib", name=name, twin="m")
+    )
+    project = folder.load()
+    traced = nau_py.Renderer(project, "Traced").render().targets["L::out"]
+    raster = nau_py.Renderer(project, "Raster").render().targets["L::out"]
+    inner = (raster[..., 3] > 0) & (traced[..., 3] > 0)
+    for axis in (0, 1):
+        for step in (-1, 1):
+            inner &= np.roll(raster[..., 3], step, axis) > 0
+    assert inner.sum() > 3000
+    assert np.abs(traced - raster)[inner][:, :3].max() <= 1 / 255

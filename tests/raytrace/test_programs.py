@@ -258,3 +258,32 @@ def test_inputs_are_read_by_pixel(wall: Folder, ray_project: RayProject) -> None
     out = nau_py.Renderer(wall.load()).render().targets["L::out"]
     assert out[47, 0].tolist() == [1, 1, 1, 1]  # lower left
     assert out[0, 63].tolist() == [127, 95, 1, 1]  # upper right
+
+
+def test_any_hit_of_the_project_is_the_built_in_one(wall: Folder, ray_project: RayProject) -> None:
+    """The same test written in Python: the same bits, for eye and shadow rays."""
+    texels = np.zeros((8, 8, 4), np.uint8)
+    texels[::2, :, 3] = 255
+    wall.image("card.png", texels)
+    wall.mtl("scene", {"Card": {"Kd": "1 0 0", "map_Kd": "card.png"}, "Wall": {"Kd": "0 1 0"}})
+    wall.obj(
+        "scene",
+        [
+            ("Card", [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]),
+            ("Wall", [(-3, -3, -1), (3, -3, -1), (3, 3, -1), (-3, 3, -1)]),
+        ],
+    )
+    wall.write("prog.py", "def alpha_test(hits):\n    return hits.texture(0)[:, 3] > 0.25\n")
+    found = []
+    for file in ("builtin", "prog.py"):
+        any_hit = f'<rtProgram type="ANY_HIT" file="{file}" proc="alpha_test" />'
+        programs = (
+            '<rtDefaultMaterial><rayType name="Radiance"><rtProgram type="CLOSEST_HIT" '
+            f'file="builtin" proc="lambert" />{any_hit}</rayType><rayType name="Shadow">'
+            '<rtProgram type="MISS" file="builtin" proc="unoccluded" />'
+            f"{any_hit}</rayType></rtDefaultMaterial>"
+        )
+        frame = nau_py.Renderer(ray_project(programs, light=(0.2, -0.3, -1), spp=4)).render()
+        found.append((frame.targets["L::out"], frame.report["totals"]["rays"]))
+    np.testing.assert_array_equal(found[0][0], found[1][0])
+    assert found[0][1] == found[1][1]

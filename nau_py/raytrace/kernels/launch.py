@@ -37,8 +37,8 @@ CAMERA = np.dtype(
     align=True,
 )
 """``base`` and ``step``: image plane coordinates (at distance 1 for perspective) of the target's
-lower left corner, and the size of a pixel there. ``aperture``: radius of the lens; ``focus``: distance along
-``forward`` at which it is sharp."""
+lower left corner, and the size of a pixel there. ``aperture``: radius of the lens; ``focus``:
+distance along ``forward`` at which it is sharp."""
 
 _position, _forward = getter(CAMERA, "position"), getter(CAMERA, "forward")
 _right, _up = getter(CAMERA, "right"), getter(CAMERA, "up")
