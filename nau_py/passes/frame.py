@@ -22,7 +22,8 @@ if TYPE_CHECKING:
 class RunOptions:
     """What the user asks of a run, beside the project.
 
-    ``samples`` overrides RAYS_PER_PIXEL; ``threads`` of 0 means one a core; ``check_numerics``
+    ``samples`` overrides RAYS_PER_PIXEL; ``threads`` of 0 means one a core, ``tile`` (rays) of 0
+    a size that suits the programs; ``check_numerics``
     makes any value that is not finite an error.
     """
 
@@ -31,7 +32,7 @@ class RunOptions:
     threads: int = 0
     allow_programs: tuple[str, ...] = ()
     no_programs: bool = False
-    tile: int = 16384
+    tile: int = 0
     check_numerics: bool = False
 
 

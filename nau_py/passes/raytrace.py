@@ -76,7 +76,7 @@ class RaytraceClass:
                 accumulate or value("TARGET_ERROR") > 0,
             ),
             state.label,
-            state.service,
+            service=state.service,
         )
         progress = frame.session.progress
 

@@ -19,25 +19,28 @@ from nau_py.raytrace.kernels import tables as t
 from nau_py.raytrace.programs import BoundProgram
 from nau_py.raytrace.scene import Scene
 from nau_py.raytrace.service import MainThread
-from nau_py.raytrace.tracer import RayCounts, Tracer
+from nau_py.raytrace.tracer import RayCounts, Tracer, Tracers
 from nau_py.raytrace.vectors import F32
 from nau_py.scene.mesh import F64
 
 I64 = NDArray[np.int64]
+COMPILED_TILE, PYTHON_TILE = 16384, 65536
+"""Rays a tile: Python programs cost time per call, so their batches are larger."""
 OUTLIER = 0.9
 """Share of a pixel's squared deviations from which one sample counts as an outlier."""
 
 
 @dataclass(frozen=True, slots=True)
 class LaunchSettings:
-    """``samples`` a pixel, ``threads`` (0: one a core), rays a ``tile``, where samples lie.
+    """``samples`` a pixel, ``threads`` (0: one a core), rays a ``tile`` (0: what suits the
+    programs), where samples lie.
 
     ``progressive``: more samples may follow, so even a single one is jittered.
     """
 
     samples: int
     threads: int = 0
-    tile: int = 16384
+    tile: int = 0
     sampler: str = "SOBOL"
     progressive: bool = False
 
@@ -134,14 +137,15 @@ class Work:
     rays: CameraRays
     settings: LaunchSettings
     label: str = "the pass"
+    tracers: Tracers = field(default_factory=Tracers)
     service: MainThread | None = None
     """Serves what tiles ask of the main thread while they run."""
 
     def tile(self, items: NDArray[Any], estimate: Estimate, part: slice) -> RayCounts:
         """Trace the samples ``items`` and add them to ``part`` of ``estimate``."""
-        tracer = Tracer(self.scene)
+        tracer = self.tracers.mine(self.scene)
         total = int(items["count"].sum())
-        radiance = np.zeros((total, 4), np.float32)
+        radiance = tracer.results(total)
         with np.errstate(all="ignore"):  # what is not finite is counted, not printed
             launch = None
             if self.generate.code == t.USER:
@@ -183,10 +187,11 @@ class Work:
         if not self.scene.tables.record["asks_python"][0]:
             tracer.march(self.camera, (lens, rule, side), self.width, items, radiance)
             return
-        queue = np.empty(len(radiance), t.PATH)
+        queue = tracer.borrow(len(radiance))[: len(radiance)]
         seed = np.uint32(self.scene.settings.seed & 0xFFFFFFFF)
         kernel.generate(self.camera, lens, rule, side, seed, self.width, items, queue)
         tracer.follow(queue, 0, radiance)
+        tracer.give_back(queue)
 
     def _launch(self, tracer: Tracer, items: NDArray[Any]) -> Launch:
         """The samples as a program of the project sees them."""
@@ -230,7 +235,8 @@ def run_launch(
     items["count"] = settings.samples if samples is None else samples
     found.estimate.taken += items["count"]
     found.taken += int(items["count"].sum())
-    parts = _parts(items["count"], settings.tile)
+    suits = PYTHON_TILE if work.scene.tables.record["asks_python"][0] else COMPILED_TILE
+    parts = _parts(items["count"], settings.tile or suits)
     threads = settings.threads or os.cpu_count() or 1
     with ThreadPoolExecutor(max_workers=threads) as pool:
         tiles = [pool.submit(work.tile, items[p], found.estimate, p) for p in parts]

@@ -16,6 +16,7 @@ from nau_py.raytrace.geometry import RayGeometry
 from nau_py.raytrace.hits import RayLight, RayMaterial
 from nau_py.raytrace.kernels import tables as t
 from nau_py.raytrace.kernels.bsdf import albedo_table
+from nau_py.raytrace.kernels.codes import GLOSSY
 from nau_py.raytrace.programs import BoundProgram
 from nau_py.raytrace.texture import RayTexture
 from nau_py.raytrace.vectors import F32
@@ -234,7 +235,7 @@ def make_tables(scene: Scene) -> Tables:
             "emitters": emitters,
             "emitter_cdf": cdf,
             "emitter_pdf": density,
-            "albedo": _albedo(),
+            "albedo": _albedo() if (closest == GLOSSY).any() else np.ones(1),
             "closest": closest,
             "any_hit": any_hit,
             "miss": miss,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -71,6 +72,18 @@ class Tracer:
         self._stack = np.zeros(t.STACK + 1, t.PATH)
         self._ray = np.zeros(RAY_FLOATS + 4, np.float32)
         self._queues: list[NDArray[Any]] = []
+        self._results = np.zeros((0, 4), np.float32)
+
+    def results(self, count: int) -> F32:
+        """Room for a tile's results, zero, (count, 4); it and the counts begin anew."""
+        self._counters[:] = 0
+        self._named.clear()
+        self._rest = RayCounts()
+        if len(self._results) < count:
+            self._results = np.empty((count, 4), np.float32)
+        found = self._results[:count]
+        found[:] = 0
+        return found
 
     @property
     def counts(self) -> RayCounts:
@@ -102,7 +115,7 @@ class Tracer:
         limit = np.array([np.inf] if tmax is None else tmax, np.float32)
         name = kind or rays.ray_type
         code = _CODES.get(name, t.OTHER)
-        queue = self._borrow(len(rays))[: len(rays)]
+        queue = self.borrow(len(rays))[: len(rays)]
         origin, direction = (
             np.ascontiguousarray(a, np.float32) for a in (rays.origin, rays.direction)
         )
@@ -115,16 +128,16 @@ class Tracer:
             count = int(self._counters[t.OTHER]) - before
             self._counters[t.OTHER] = before
             self._named[name] = self._named.get(name, 0) + count
-        self._return(queue)
+        self.give_back(queue)
         return result
 
-    def _borrow(self, size: int) -> NDArray[Any]:
+    def borrow(self, size: int) -> NDArray[Any]:
         for index, queue in enumerate(self._queues):
             if len(queue) >= size:
                 return self._queues.pop(index)
         return np.empty(max(size, MIN_QUEUE), t.PATH)
 
-    def _return(self, queue: NDArray[Any]) -> None:
+    def give_back(self, queue: NDArray[Any]) -> None:
         self._queues.append(queue if queue.base is None else queue.base)
 
     def _tile(self, radiance: F32) -> NDArray[Any]:
@@ -152,7 +165,7 @@ class Tracer:
     ) -> None:
         """Follow the paths of ``queue`` to their ends; add what they bring to ``radiance``."""
         tile = self._tile(radiance)
-        deferred = self._borrow(len(queue) + 1)
+        deferred = self.borrow(len(queue) + 1)
         current = np.zeros(1, t.PATH)
         while tile["next"][0] < len(queue):
             tile["waiting"], tile["deferred"] = 0, deferred.ctypes.data
@@ -165,7 +178,7 @@ class Tracer:
                     self.follow(again, ray_type, radiance, name)
             elif tile["next"][0] < len(queue):  # one path asks more than the queue holds
                 deferred = np.empty(2 * len(deferred), t.PATH)
-        self._return(deferred)
+        self.give_back(deferred)
 
     def _answer(self, paths: NDArray[Any], ray_type: int, radiance: F32, name: str) -> NDArray[Any]:
         """Run the programs that ``paths`` wait for, by material; the paths that go on."""
@@ -242,6 +255,20 @@ class Tracer:
         rays = self._rays(paths, shadow if shadow >= 0 else ray_type)
         rays.depth += 1
         return self.trace(rays, np.ascontiguousarray(paths["tmax"]), "shadow", 0.0)
+
+
+class Tracers:
+    """A tracer for each thread, kept from tile to tile: memory that is touched stays warm."""
+
+    def __init__(self) -> None:
+        self._local = threading.local()
+
+    def mine(self, scene: Scene) -> Tracer:
+        """The tracer of the calling thread."""
+        found: Tracer | None = getattr(self._local, "tracer", None)
+        if found is None or found.scene is not scene:
+            found = self._local.tracer = Tracer(scene)
+        return found
 
 
 def _rows(paths: NDArray[Any], index: NDArray[np.int64]) -> NDArray[Any]:
