@@ -38,8 +38,8 @@ class RayGeometry:
 
     World space less ``centre``, float64 (3,): zero unless the scene lies far off. ``material``:
     int32 (m,) index into ``materials``, the material group names; ``item``: int32 (m,) index of
-    the object. Attribute arrays are float32 (n, 4); a missing one is None. The last ``moving``
-    triangles belong to objects that move.
+    the object, of those given that have triangles. Attribute arrays are float32 (n, 4); a missing
+    one is None. The last ``moving`` triangles belong to objects that move.
     """
 
     vertices: F32
@@ -104,7 +104,7 @@ def gather(
     listed in ``dropped``: without area, not finite, too large, or the same as a later one.
     """
     objects = [o for o in objects if o.mesh.primitive == "TRIANGLES"]
-    objects.sort(key=lambda o: o.name in moving)
+    order = sorted(range(len(objects)), key=lambda k: objects[k].name in moving)
     parts: list[dict[str, Any]] = []
     counts: list[int] = []
     points: list[F64] = []
@@ -114,7 +114,8 @@ def gather(
     names: dict[str, int] = {}
     dropped = Dropped()
     offset, first_moving = 0, 0
-    for number, item in enumerate(objects):
+    for number in order:
+        item = objects[number]
         mesh = item.mesh
         wide = mesh.positions.astype(np.float64) @ item.matrix.T
         if not np.array_equal(item.matrix, np.eye(4)):

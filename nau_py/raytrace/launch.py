@@ -28,6 +28,8 @@ COMPILED_TILE, PYTHON_TILE = 16384, 65536
 """Rays a tile: Python programs cost time per call, so their batches are larger."""
 OUTLIER = 0.9
 """Share of a pixel's squared deviations from which one sample counts as an outlier."""
+MANY = 64
+"""Samples from which that says something: of few, one that meets an edge outweighs the rest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +77,7 @@ class Estimate:
         if len(self.squares) < len(self.number):
             return np.zeros(len(self.number), bool)
         total = self.squares.sum(axis=1)
-        return np.asarray((self.number >= 8) & (self.largest > OUTLIER * total) & (total > 0))
+        return np.asarray((self.number >= MANY) & (self.largest > OUTLIER * total) & (total > 0))
 
     @property
     def error(self) -> F64:
@@ -247,6 +249,8 @@ def run_launch(
                 progress(part.stop, len(pixels))
         except BaseException:  # an error, or Ctrl-C: tiles that have not begun never do
             pool.shutdown(wait=False, cancel_futures=True)
+            if work.service:
+                work.service.abandon(tiles)
             raise
     return found
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Future
 from queue import Empty, SimpleQueue
 from typing import Any
 
@@ -34,6 +34,17 @@ class MainThread:
             while not awaited.done():
                 self._serve()
             yield awaited.result()
+
+    def abandon(self, futures: list[Future[Any]]) -> None:
+        """Cancel ``futures``; those that run get no answer. Returns when they have ended."""
+        for future in futures:
+            future.cancel()
+        while not all(future.done() for future in futures):
+            try:
+                waiting, _, _ = self._requests.get(timeout=_PATIENCE)
+            except Empty:
+                continue
+            waiting.set_exception(CancelledError())
 
     def _serve(self) -> None:
         try:

@@ -205,3 +205,27 @@ def test_selectors_survive_both_formats(masked: Folder) -> None:
     again = load_project(masked.path / "again.yaml")
     assert first.file == again.file
     assert len(first.pipelines[0].passes[0].select) == 2  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(
+    "select, library, expected",
+    [
+        (
+            '<property name="SPECULAR" />',
+            TARGETS.replace("RGBA32F", "RGBA", 1),
+            "mask pass 'choose' writes positions to 'weight', of format 'RGBA'; 'RGBA32F', 'RGBA16F' "
+            "holds them",
+        ),
+        (
+            '<and><property name="SPECULR" above="0.5" /></and>',
+            TARGETS,
+            "mask pass 'choose': materials have no 'SPECULR'; there is",
+        ),
+    ],
+)
+def test_lint_of_mask_passes(masked: Folder, select: str, library: str, expected: str) -> None:
+    masked.write("lib.mlib", library)
+    masked.write("project.xml", MASKED.format(select=select, how=""))
+    found = [d.message for d in nau_py.lint(masked.load()) if d.rule == "P003"]
+    assert len(found) == 1
+    assert found[0].startswith(expected)

@@ -248,3 +248,22 @@ def test_compiled_shading_is_that_of_its_glsl_twin(folder: Folder, name: str) ->
             inner &= np.roll(raster[..., 3], step, axis) > 0
     assert inner.sum() > 3000
     assert np.abs(traced - raster)[inner][:, :3].max() <= 1 / 255
+
+
+def test_a_failing_program_beside_materials_ends_the_frame(folder: Folder) -> None:
+    """Tiles that wait for OpenGL when another fails are let go: an error, not a standstill."""
+    from tests.raytrace.studio import box, studio
+
+    folder.write("prog.py", "def shade(hits):\n    raise ValueError('no')\n")
+    project = studio(
+        folder,
+        box("a", "A", [1, 1, 1], [-1, 0, 0]) + box("b", "B", [1, 1, 1], [1, 0, 0]),
+        {},
+        '<rtMap to="B"><rayType name="Radiance"><rtProgram type="CLOSEST_HIT" file="prog.py" '
+        'proc="shade" /></rayType></rtMap>',
+        default="material",
+        size=(64, 64),
+    )
+    options = nau_py.RunOptions(threads=2, tile=256)
+    with pytest.raises(nau_py.NauError, match="raised ValueError: no"):
+        nau_py.Renderer(project, options=options).render()

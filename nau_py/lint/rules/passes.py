@@ -7,8 +7,11 @@ from collections.abc import Iterator
 from nau_py.diagnostic import Diagnostic, listing, nearest
 from nau_py.lint.rule import ERROR, WARNING, Facts, check, rule
 from nau_py.model.linked import Project
+from nau_py.model.mask import MaskPass, PropertySelector
 from nau_py.model.pass_classes import PASS_CLASSES, PLUGIN_CLASSES, ComputePass
 from nau_py.model.target import CubeMapAttachment, RenderTarget
+
+MASK_FORMATS = ["RGBA32F", "RGBA16F"]
 
 P001 = rule(
     "P001",
@@ -100,6 +103,32 @@ def needs(facts: Facts) -> Iterator[Diagnostic]:
                     yield P003.at(
                         pass_.location, f"depthmap pass '{pass_.name}' needs a <renderTarget>"
                     )
+            elif isinstance(pass_, MaskPass):
+                yield from _mask(facts.project, pass_)
+
+
+def _mask(project: Project, pass_: MaskPass) -> Iterator[Diagnostic]:
+    owned = project.target_of(pass_)
+    colors = owned[1].colors if owned else []
+    if not colors:
+        yield P003.at(
+            pass_.location, f"mask pass '{pass_.name}' needs a <renderTarget> with a colour texture"
+        )
+    elif (colors[0].internalFormat or "RGBA") not in MASK_FORMATS:
+        yield P003.at(
+            colors[0].where("internalFormat"),
+            f"mask pass '{pass_.name}' writes positions to '{colors[0].name}', of format "
+            f"'{colors[0].internalFormat or 'RGBA'}'; {listing(MASK_FORMATS)} holds them",
+        )
+    known = [a.name for a in project.registry["COLOR"]]
+    for top in pass_.select:
+        for node in top.walk():
+            if isinstance(node, PropertySelector) and node.name and node.name not in known:
+                yield P003.at(
+                    node.where("name"),
+                    f"mask pass '{pass_.name}': materials have no '{node.name}'; there is "
+                    f"{listing(known)}{nearest(node.name, known)}",
+                )
 
 
 def _compute(pass_: ComputePass) -> Iterator[Diagnostic]:
