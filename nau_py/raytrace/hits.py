@@ -17,7 +17,7 @@ from nau_py.model.attributes.color import COLOR
 from nau_py.raytrace.kernels import batch
 from nau_py.raytrace.random import uniform
 from nau_py.raytrace.texture import WHITE, RayTexture
-from nau_py.raytrace.vectors import F32
+from nau_py.raytrace.vectors import F32, Mask
 
 if TYPE_CHECKING:
     from nau_py.raytrace.tracer import Tracer
@@ -214,13 +214,16 @@ class Hits:
         tmax: F32 | float | None = None,
         kind: str | None = None,
         initial: float = 0.0,
+        where: Mask | None = None,
     ) -> F32:
         """Send rays of ``ray_type`` from the hits along ``direction`` (3,) or (n, 3).
 
         Returns what they bring, RGBA (n, 4). ``kind`` is how the report counts them (default:
         the ray type's name). Rays longer than MAX_DEPTH bring 0; a miss without a miss program
-        brings ``initial``.
+        brings ``initial``. ``where``, bool (n,): only these hits send one, the others get 0.
         """
+        if where is not None and not where.all():
+            return self._trace_some(np.flatnonzero(where), ray_type, direction, tmax, kind, initial)
         wide = np.ascontiguousarray(
             np.broadcast_to(np.asarray(direction, np.float32), (len(self), 3))
         )
@@ -238,6 +241,43 @@ class Hits:
         )
         limit = None if tmax is None else np.broadcast_to(np.asarray(tmax, np.float32), len(self))
         return self.rays.tracer.trace(rays, limit, kind, initial)
+
+    def _trace_some(
+        self,
+        chosen: NDArray[np.int64],
+        ray_type: str,
+        direction: F32,
+        tmax: F32 | float | None,
+        kind: str | None,
+        initial: float,
+    ) -> F32:
+        """:meth:`trace` from the hits ``chosen``; the others get 0."""
+        result = np.zeros((len(self), 4), np.float32)
+        if not len(chosen):
+            return result
+        rays = self.rays
+        some = Rays(
+            rays.tracer,
+            rays.origin[chosen],
+            rays.direction[chosen],
+            rays.pixel[chosen],
+            rays.sample[chosen],
+            rays.depth,
+            rays.ray_type,
+        )
+        part = Hits(
+            some,
+            self.triangle[chosen],
+            self.u[chosen],
+            self.v[chosen],
+            self.t[chosen],
+            self.material,
+        )
+        wide = np.asarray(direction, np.float32)
+        own = wide[chosen] if wide.ndim == 2 else wide
+        limit = tmax[chosen] if isinstance(tmax, np.ndarray) and tmax.ndim else tmax
+        result[chosen] = part.trace(ray_type, own, limit, kind, initial)
+        return result
 
 
 @dataclass(slots=True)

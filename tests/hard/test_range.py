@@ -236,3 +236,44 @@ def test_history_resize(folder: Folder) -> None:
     found = nau_py.Renderer(large).render(1).targets["L::out"]
     assert found.shape == (10, 12, 4)
     np.testing.assert_array_equal(found[..., :3], np.broadcast_to([0.25, 0.5, 1.0], (10, 12, 3)))
+
+
+def test_pixel_centre(folder: Folder) -> None:
+    """The ray through a pixel meets the point at which the rasteriser sampled it: a tilted wall
+    whose positions change in both directions, row 0 at the bottom in both."""
+    folder.write("prog.py", "def where(hits):\n    return hits.position\n")
+    studio(
+        folder,
+        square("wall", "W", [9, 1, 9], [0, 0, -1], '<ROTATE x="1" y="0.3" z="0.2" w="70" />'),
+        {},
+        camera='<POSITION x="0.3" y="0.2" z="3" />',
+        size=(48, 40),
+    )
+    text = (folder.path / "project.xml").read_text()
+    text = text.replace(
+        '<pass name="trace"',
+        '<pass name="choose" class="mask"><camera name="C" /><scenes><scene name="S" /></scenes>'
+        '<renderTarget name="seen" fromLibrary="L" /></pass><pass name="trace"',
+    ).replace('file="builtin" proc="emission"', 'file="prog.py" proc="where"')
+    text = text.replace(
+        "<rtEntryPoint>",
+        '<rtInput><buffer var="position" texture="L::where" /></rtInput><rtEntryPoint>',
+    )
+    folder.write("project.xml", text)
+    library = (folder.path / "lib.mlib").read_text()
+    folder.write(
+        "lib.mlib",
+        library.replace(
+            "<renderTargets>",
+            '<renderTargets><renderTarget name="seen"><SIZE width="48" height="40" /><colors>'
+            '<color name="where" internalFormat="RGBA32F" /></colors></renderTarget>',
+        ),
+    )
+    frame = nau_py.Renderer(folder.load()).render()
+    raster, traced = frame.targets["L::where"][..., :3], frame.targets["L::out"][..., :3]
+    both = (np.abs(raster).sum(axis=-1) > 0) & (np.abs(traced).sum(axis=-1) > 0)
+    assert both.mean() > 0.5
+    # the driver interpolates with the 8 bits that it places vertices by
+    np.testing.assert_allclose(traced[both], raster[both], atol=2e-3)
+    spacing = np.abs(np.diff(raster[:, :, 0], axis=1))[both[:, 1:] & both[:, :-1]].mean()
+    assert np.abs(traced - raster)[both].max() < 0.1 * spacing

@@ -30,7 +30,7 @@ def shade(hits):
     to_light = -hits.variables["lightDirection"][:3].astype(np.float32)
     to_light /= np.sqrt(dot(to_light, to_light))
     cosine = np.maximum(dot(hits.facing_normal, to_light), 0)
-    seen = hits.trace("Shadow", to_light, kind="shadow")[:, 0]
+    seen = hits.trace("Shadow", to_light, kind="shadow", where=cosine > 0)[:, 0]
     light = hits.variables["lightColor"][:3].astype(np.float32)
     base = hits.variables["diffuse"][:3].astype(np.float32) * hits.texture(0)[:, :3]
     return base * (light * (cosine * seen)[:, None] + AMBIENT)
