@@ -24,7 +24,7 @@ from nau_py.scene.mesh import F64
 
 ProgramTable = dict[tuple[str, str], list[BoundProgram | None]]
 """(ray type, kind) to a program for each material; a MISS has one entry."""
-ALBEDO_SAMPLES = 1024
+ALBEDO_SAMPLES = 256
 
 
 @dataclass(frozen=True, slots=True)
