@@ -273,6 +273,8 @@ class Hits:
             self.t[chosen],
             self.material,
         )
+        if "_surface" in self.__dict__:
+            part.__dict__["_surface"] = tuple(a[chosen] for a in self._surface)
         wide = np.asarray(direction, np.float32)
         own = wide[chosen] if wide.ndim == 2 else wide
         limit = tmax[chosen] if isinstance(tmax, np.ndarray) and tmax.ndim else tmax

@@ -9,7 +9,7 @@ import nau_py
 from nau_py.raytrace.accel import Accelerator
 from nau_py.raytrace.geometry import gather
 from nau_py.scene.mesh import Group, Mesh, SceneObject, pad4
-from tests.conftest import Folder, pixel_rays
+from tests.conftest import Folder
 from tests.hard.test_geometry import geometry, surface
 from tests.raytrace.studio import box, colour, picture, program, sphere, square, studio
 
@@ -185,8 +185,6 @@ def test_thin_wall(folder: Folder) -> None:
         size=(64, 64),
     )
     found = picture(project)
-    origin, direction = pixel_rays((64, 64), (0, 0, 0))
-    del origin, direction
     # the right half of the picture lies behind the wall
     assert found[40:, 40:, 0].max() == 0
 

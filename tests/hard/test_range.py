@@ -17,7 +17,7 @@ TURN = '<ROTATE x="1" y="0" z="0" w="90" />'
 @pytest.mark.parametrize("value", [7e4, 1e6])
 def test_fp16_overflow(folder: Folder, value: float) -> None:
     """Radiance beyond half precision saturates; it is never infinite."""
-    project = studio(
+    studio(
         folder,
         square("wall", "Wall", [9, 1, 9], [0, 0, 0], TURN),
         {"Wall": colour("EMISSION", value, value, value, 1.0)},
@@ -25,7 +25,6 @@ def test_fp16_overflow(folder: Folder, value: float) -> None:
     )
     library = (folder.path / "lib.mlib").read_text()
     folder.write("lib.mlib", library.replace("RGBA32F", "RGBA16F"))
-    del project
     found = picture(folder.load())
     assert found[..., 0].tolist() == np.full((4, 4), 65504.0).tolist()
 
@@ -115,12 +114,11 @@ def test_nan_sample(folder: Folder) -> None:
         "import numpy as np\n\n\ndef shade(hits):\n    value = np.ones((len(hits), 3))\n"
         "    value[(hits.rays.pixel == 5) & (hits.rays.sample == 2)] = np.nan\n    return value\n",
     )
-    project = studio(folder, square("w", "W", [9, 1, 9], [0, 0, 0], TURN), {}, size=(8, 8), spp=4)
+    studio(folder, square("w", "W", [9, 1, 9], [0, 0, 0], TURN), {}, size=(8, 8), spp=4)
     text = (folder.path / "project.xml").read_text()
     folder.write(
         "project.xml", text.replace('file="builtin" proc="emission"', 'file="prog.py" proc="shade"')
     )
-    del project
     frame = nau_py.Renderer(folder.load()).render()
     np.testing.assert_array_equal(frame.targets["L::out"][..., :3], 1.0)
     assert frame.report["nonfinite"] == 1
@@ -188,14 +186,13 @@ def camera(launch):
 def test_gbuffer_origin(folder: Folder) -> None:
     """Shadow rays from positions that the rasteriser stored in float32: no acne."""
     folder.write("prog.py", GBUFFER)
-    project = studio(
+    studio(
         folder,
         square("floor", "Floor", [3, 1, 3], [0, 0, 0]),
         {},
         camera='<POSITION x="0" y="2.6" z="3" /><LOOK_AT_POINT x="0" y="0" z="0" />',
         size=(64, 64),
     )
-    del project
     text = (folder.path / "project.xml").read_text()
     text = text.replace(
         '<pass name="trace"',

@@ -11,7 +11,7 @@ from tests.raytrace.studio import box, colour, program, sphere, square, studio
 
 
 def scene(folder: Folder) -> nau_py.Project:
-    project = studio(
+    studio(
         folder,
         square("floor", "White", [9, 1, 9], [0, -1, 0])
         + box("box", "White", [0.4, 0.4, 0.4], [-0.8, -0.3, 0])
@@ -26,7 +26,6 @@ def scene(folder: Folder) -> nau_py.Project:
     )
     text = (folder.path / "project.xml").read_text()
     folder.write("project.xml", text.replace('<scene name="S">', '<scene name="S" type="Scene">'))
-    del project
     return folder.load()
 
 

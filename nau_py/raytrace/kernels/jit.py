@@ -24,17 +24,25 @@ def _cache_folder() -> str:
     for file in sorted(Path(__file__).parent.glob("*.py")):
         digest.update(file.read_bytes())
     base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    return str(Path(base) / "nau_py" / f"kernels-{digest.hexdigest()[:16]}")
+    folder = Path(base) / "nau_py" / f"kernels-{digest.hexdigest()[:16]}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return ""
+    return str(folder) if os.access(folder, os.W_OK) else ""
 
 
 _FOLDER = numba.config.CACHE_DIR or _cache_folder()
+"""Empty where nothing can be kept: kernels are then compiled in every process."""
 
 
 def kernel(function: F) -> F:
     """Compile ``function``, which Python calls, at its first call: no GIL, IEEE arithmetic."""
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, _FOLDER
     try:
-        compiled = njit(nogil=True, cache=True, error_model="numpy", fastmath=False)(function)
+        compiled = njit(nogil=True, cache=bool(_FOLDER), error_model="numpy", fastmath=False)(
+            function
+        )
     finally:
         numba.config.CACHE_DIR = before
     return cast(F, compiled)
