@@ -163,7 +163,8 @@ class Renderer:
     def move(self, name: str, matrix: NDArray[Any]) -> None:
         """Put the objects called ``name`` elsewhere from the next frame on.
 
-        ``matrix``: object to world, (4, 4), column vectors. Raises ValueError for an unknown name.
+        ``matrix``: object to world, (4, 4), column vectors. :meth:`close`, and going back to an
+        earlier frame, put everything back. Raises ValueError for an unknown name.
         """
         self.session.world.move(name, matrix)
 
