@@ -50,7 +50,7 @@ RUNS = 9
 SUN = np.array([-0.5, -1.0, -0.4]) / np.linalg.norm([-0.5, -1.0, -0.4])
 
 
-def bound(function: Callable[..., Any], code: int = 127) -> BoundProgram:
+def bound(function: Callable[..., Any] | None, code: int = 127) -> BoundProgram:
     return BoundProgram(function, "benchmark", NOWHERE, "", code)
 
 
@@ -123,9 +123,9 @@ def work(geometry: RayGeometry, camera: CameraState, size: int, threads: int, us
     count = len(geometry.materials)
     values: dict[str, tuple[Any, ...]] = {a.name: a.default for a in LIGHT if a.default}
     values |= {"NORMALIZED_DIRECTION": (*SUN, 0.0), "DIRECTION": (*SUN, 0.0)}
-    shade = bound(user_shade) if user else bound(print, codes.LAMBERT)
-    miss = bound(user_miss) if user else bound(print, codes.BACKGROUND)
-    lit = bound(user_lit) if user else bound(print, codes.UNOCCLUDED)
+    shade = bound(user_shade) if user else bound(None, codes.LAMBERT)
+    miss = bound(user_miss) if user else bound(None, codes.BACKGROUND)
+    lit = bound(user_lit) if user else bound(None, codes.UNOCCLUDED)
     scene = Scene(
         geometry,
         Accelerator(geometry),
@@ -145,7 +145,7 @@ def work(geometry: RayGeometry, camera: CameraState, size: int, threads: int, us
     rect = Rect(0.0, 0.0, float(size), float(size))
     return Work(
         scene,
-        bound(user_generate) if user else bound(print, PINHOLE),
+        bound(user_generate) if user else bound(None, PINHOLE),
         None,
         size,
         camera_record(camera, rect, geometry.centre),

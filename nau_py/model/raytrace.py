@@ -35,6 +35,11 @@ VERTEX_ATTRIBUTES = [
 ]
 
 
+def component(name: str | None, channels: int) -> int:
+    """The channel that ``x`` to ``w`` names, of so many; the last one for none or one too far."""
+    return min("xyzw".index(name) if name in tuple("xyzw") else 3, channels - 1)
+
+
 class Program(Node):
     """A program: a procedure of a file. The file ``builtin`` is nau_py's own."""
 

@@ -110,9 +110,7 @@ class MaskClass:
             if name:
                 found = frame.session.resources.texture(name)
                 if found is not None:
-                    values = found.read()
-                    scale = 255.0 if values.dtype == np.uint8 else 1.0
-                    visible.textures[name] = np.atleast_3d(values) / np.float32(scale)
+                    visible.textures[name] = found.read_values()
         return visible
 
 

@@ -14,7 +14,7 @@ from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, EXCEPTION, MISS, RAY_GEN
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
 from nau_py.model.maps import matches
-from nau_py.model.raytrace import Program, RaytracePass, RayVariable
+from nau_py.model.raytrace import Program, RaytracePass, RayVariable, component
 from nau_py.model.raytrace import RayMaterial as RayMaterialNode
 from nau_py.model.texture import Texture
 from nau_py.passes.drawing import camera_context, pass_value
@@ -35,14 +35,6 @@ from nau_py.scene.material import RenderMaterial, TextureBinding
 
 if TYPE_CHECKING:
     from nau_py.raster.targets import Target
-
-COMPONENTS = "xyzw"
-
-
-def mask_component(pass_: RaytracePass, channels: int) -> int:
-    """The channel of the mask input: the named one, else the last."""
-    named = pass_.mask.mask if pass_.mask else None
-    return min(COMPONENTS.index(named) if named in tuple(COMPONENTS) else 3, channels - 1)
 
 
 class TracingState:
@@ -289,10 +281,7 @@ def read_inputs(pass_: RaytracePass, frame: FrameContext) -> dict[str, NDArray[A
     for source in pass_.rtInput:
         texture_ = frame.session.resources.texture(source.texture or "")
         if source.var and texture_ is not None:
-            values = texture_.read()
-            if values.dtype == np.uint8:
-                values = values.astype(np.float32) / np.float32(255)
-            found[source.var] = values
+            found[source.var] = texture_.read_values()
     return found
 
 
@@ -300,7 +289,8 @@ def read_mask(pass_: RaytracePass, inputs: dict[str, NDArray[Any]]) -> NDArray[A
     values = inputs.get(pass_.mask.var or "") if pass_.mask else None
     if values is None:
         return None
-    return values[:, :, mask_component(pass_, values.shape[2])]
+    named = pass_.mask.mask if pass_.mask else None
+    return values[:, :, component(named, values.shape[2])]
 
 
 def store_colours(target: Target, pixels: NDArray[np.int64], colours: NDArray[np.float32]) -> None:

@@ -33,6 +33,11 @@ class Texture:
         gl.read_texture(self.glo, level, self.format.layout, self.format.kind, out)
         return out
 
+    def read_values(self) -> NDArray[Any]:
+        """As :meth:`read`, bytes as float32 in 0..1."""
+        texels = self.read()
+        return texels.astype(np.float32) / np.float32(255) if texels.dtype == np.uint8 else texels
+
     def write(self, data: NDArray[Any]) -> None:
         """Fill level 0 of a 2D texture from (height, width, channels), row 0 at the bottom."""
         wanted = np.ascontiguousarray(data, self.format.dtype)

@@ -85,6 +85,14 @@ class Intersections:
     t: F32
 
 
+@dataclass(eq=False)
+class _Buffers:
+    """What an Embree scene shares: kept alive as long as the scene."""
+
+    vertices: F32
+    triangles: NDArray[np.uint32]
+
+
 class Accelerator:
     """Acceleration structures over the triangles of a :class:`RayGeometry`.
 
@@ -94,7 +102,7 @@ class Accelerator:
 
     def __init__(self, geometry: RayGeometry) -> None:
         self.first_moving = geometry.first_moving
-        self._kept: dict[str, tuple[Any, Any]] = {}
+        self._kept: dict[str, _Buffers] = {}
         self.scene = self._build("scene", geometry, slice(0, geometry.first_moving))
         self.moving = 0
         self.rebuild_moving(geometry)
@@ -123,9 +131,8 @@ class Accelerator:
         rtc.rtcCommitScene(scene)
         if problem := rtc.rtcGetDeviceError(device):
             raise MemoryError(f"Embree could not build {len(triangles)} triangles: error {problem}")
-        owner = _Handle(vertices, triangles)
-        weakref.finalize(owner, rtc.rtcReleaseScene, scene)
-        self._kept[name] = (owner, scene)
+        self._kept[name] = _Buffers(vertices, triangles)
+        weakref.finalize(self._kept[name], rtc.rtcReleaseScene, scene)
         return int(scene)
 
     def _record(self) -> NDArray[Any]:
@@ -157,11 +164,3 @@ class Accelerator:
         found = np.zeros(len(o), bool)
         occluded(self._record(), o, d, limit, found)
         return found
-
-
-@dataclass(eq=False)
-class _Handle:
-    """Keeps the buffers of a scene alive as long as the scene."""
-
-    vertices: F32
-    triangles: NDArray[np.uint32]

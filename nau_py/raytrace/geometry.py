@@ -100,8 +100,8 @@ def gather(
     """The triangles of ``objects`` with their transforms applied; other primitives are left out.
 
     ``moving``: names of objects that change place; ``centre``: what to move the scene by, chosen
-    if None. Faces that no ray can hit well are left out and
-    listed in ``dropped``: without area, not finite, too large, or the same as a later one.
+    if None. Faces that no ray can hit well are left out and listed in ``dropped``: without area,
+    not finite, too large, or the same as a later one.
     """
     objects = [o for o in objects if o.mesh.primitive == "TRIANGLES"]
     order = sorted(range(len(objects)), key=lambda k: objects[k].name in moving)
@@ -130,9 +130,9 @@ def gather(
             triangles.append(faces + np.int32(offset))
             owners.append(np.full(len(faces), index, np.int32))
             items.append(np.full(len(faces), number, np.int32))
+            if item.name not in moving:
+                first_moving += len(faces)
         offset += mesh.vertex_count
-        if item.name not in moving:
-            first_moving = sum(len(t) for t in triangles)
     if not triangles:
         empty = np.zeros((0, 3), np.float32)
         none = np.zeros((0, 3), np.int32)

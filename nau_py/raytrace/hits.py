@@ -151,8 +151,8 @@ class Hits:
     def _interpolate(self, values: F32 | None, components: int) -> F32:
         result = np.zeros((len(self), components), np.float32)
         if values is not None:
-            address = np.ascontiguousarray(values).ctypes.data
-            batch.attributes(self._scene, address, self.triangle, self.u, self.v, result)
+            kept = np.ascontiguousarray(values)  # lives as long as its address is used
+            batch.attributes(self._scene, kept.ctypes.data, self.triangle, self.u, self.v, result)
         return result
 
     def attribute(self, name: str) -> F32:

@@ -21,6 +21,7 @@ from nau_py.model.mask import (
     TextureSelector,
 )
 from nau_py.model.node import Node
+from nau_py.model.raytrace import component
 from nau_py.raytrace.vectors import F32
 from nau_py.scene.mesh import F64
 
@@ -75,8 +76,7 @@ def _weight(selector: Node, seen: Visible) -> F64:
         return _shadow_border(selector, seen)
     if isinstance(selector, TextureSelector):
         values = seen.textures[selector.name or ""]
-        channel = "xyzw".index(selector.component) if selector.component else -1
-        return np.asarray(values[..., min(channel, values.shape[2] - 1)], np.float64)
+        return np.asarray(values[..., component(selector.component, values.shape[2])], np.float64)
     parts = [_weight(part, seen) for part in selector.parts]  # type: ignore[attr-defined]
     if isinstance(selector, AndSelector):
         return np.min(parts, axis=0) if parts else np.ones(seen.shape)

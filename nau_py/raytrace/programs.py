@@ -26,15 +26,16 @@ from nau_py.raytrace.vectors import F32, Mask
 class BoundProgram:
     """A program with the words that its errors need: project, pass, material, proc."""
 
-    function: Callable[..., Any]
+    function: Callable[..., Any] | None
     label: str
     location: Location
     file: str
     code: int = USER
-    """What compiled kernels call the program by; USER: it is Python."""
+    """What kernels call the program by; USER: it is Python. A compiled one has no function."""
 
     def call(self, argument: object) -> Any:
         """Run the program. Raises :class:`~nau_py.errors.ProgramError` for what it raises."""
+        assert self.function is not None, f"{self.label} is compiled"
         try:
             return self.function(argument)
         except NauError:
@@ -92,11 +93,6 @@ class BoundProgram:
         return array
 
 
-def _compiled(argument: object) -> object:
-    """Stands for a kernel where a Python function is asked for; the engine never calls it."""
-    raise NotImplementedError("a compiled program is run by its code")
-
-
 @dataclass(frozen=True, slots=True)
 class TrustRule:
     """Which folders programs may be loaded from."""
@@ -150,7 +146,7 @@ class ProgramLoader:
                 message += nearest(proc, known)
                 raise ProgramError(error("T006", program.where("proc"), message))
             code = codes.get(proc, USER)
-            return BoundProgram(functions.get(proc, _compiled), label, program.location, "", code)
+            return BoundProgram(functions.get(proc), label, program.location, "", code)
         path = stand_in(self._folder, program.file or "")
         if path is None:
             message = f"{label}: no Python file stands in for '{program.file}'"

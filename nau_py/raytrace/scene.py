@@ -84,7 +84,6 @@ class TexelStore:
     def __init__(self) -> None:
         self._index: dict[int, int] = {}
         self._kept: list[RayTexture] = []
-        self._offset = 0
         self._joined: tuple[NDArray[Any], NDArray[np.uint8]] | None = None
 
     def index(self, texture: RayTexture | None) -> int:
@@ -104,7 +103,7 @@ class TexelStore:
             records = [x.record(int(o)) for x, o in zip(self._kept, offsets)]
             self._joined = (
                 np.concatenate([np.zeros(0, t.TEXTURE), *records]),
-                np.concatenate([np.zeros(1, np.uint8)[:0], *(x.rgba for x in self._kept)]),
+                np.concatenate([np.zeros(0, np.uint8), *(x.rgba for x in self._kept)]),
             )
         return self._joined
 

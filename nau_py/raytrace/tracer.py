@@ -188,7 +188,7 @@ class Tracer:
         tables = self.scene.tables
         batch.group_keys(paths, tables.arrays["owner"], materials, depths, keys)
         order = np.empty(len(paths), np.int64)
-        starts = np.empty(t.OCCLUSION * depths * materials + depths * materials + 1, np.int64)
+        starts = np.empty((t.OCCLUSION + 1) * depths * materials + 1, np.int64)
         batch.sort_by(keys, len(starts) - 1, order, starts)
         going: list[NDArray[Any]] = []
         for key in np.flatnonzero(np.diff(starts)):

@@ -11,7 +11,7 @@ from nau_py.diagnostic import error
 from nau_py.errors import NauError
 from nau_py.graph.plan import Plan
 from nau_py.model.location import NOWHERE
-from nau_py.model.raytrace import RaytracePass
+from nau_py.model.raytrace import RaytracePass, component
 
 TINT = (1.0, 0.1, 0.6)
 STRENGTH = 0.6
@@ -26,8 +26,7 @@ def mask_overlay(image: NDArray[Any], targets: dict[str, NDArray[Any]], plan: Pl
         pass_ = step.pass_
         if isinstance(pass_, RaytracePass) and pass_.mask and pass_.mask.texture in targets:
             values = targets[pass_.mask.texture]
-            channel = "xyzw".index(pass_.mask.mask) if pass_.mask.mask else -1
-            weight = values[..., min(channel, values.shape[2] - 1)].astype(np.float64)
+            weight = values[..., component(pass_.mask.mask, values.shape[2])].astype(np.float64)
             if values.dtype == np.uint8:
                 weight /= 255
             return _tinted(image, np.clip(weight, 0, 1))

@@ -183,6 +183,31 @@ def camera(launch):
 """
 
 
+def draw_positions(folder: Folder, old: str, new: str) -> None:
+    """Give the studio project a pass before its own that draws positions into ``L::where``, which
+    programs read as ``position``; and write ``new`` for ``old``."""
+    text = (folder.path / "project.xml").read_text().replace(old, new)
+    text = text.replace(
+        '<pass name="trace"',
+        '<pass name="choose" class="mask"><camera name="C" /><scenes><scene name="S" /></scenes>'
+        '<renderTarget name="seen" fromLibrary="L" /></pass><pass name="trace"',
+    ).replace(
+        "<rtEntryPoint>",
+        '<rtInput><buffer var="position" texture="L::where" /></rtInput><rtEntryPoint>',
+    )
+    folder.write("project.xml", text)
+    library = (folder.path / "lib.mlib").read_text()
+    size = library[library.index("<SIZE") : library.index("/>", library.index("<SIZE")) + 2]
+    folder.write(
+        "lib.mlib",
+        library.replace(
+            "<renderTargets>",
+            f'<renderTargets><renderTarget name="seen">{size}<colors>'
+            '<color name="where" internalFormat="RGBA32F" /></colors></renderTarget>',
+        ),
+    )
+
+
 def test_gbuffer_origin(folder: Folder) -> None:
     """Shadow rays from positions that the rasteriser stored in float32: no acne."""
     folder.write("prog.py", GBUFFER)
@@ -193,25 +218,10 @@ def test_gbuffer_origin(folder: Folder) -> None:
         camera='<POSITION x="0" y="2.6" z="3" /><LOOK_AT_POINT x="0" y="0" z="0" />',
         size=(64, 64),
     )
-    text = (folder.path / "project.xml").read_text()
-    text = text.replace(
-        '<pass name="trace"',
-        '<pass name="choose" class="mask"><camera name="C" /><scenes><scene name="S" /></scenes>'
-        '<renderTarget name="seen" fromLibrary="L" /></pass><pass name="trace"',
-    ).replace('<rayGen file="builtin" proc="pinhole" />', '<rayGen file="prog.py" proc="camera" />')
-    text = text.replace(
-        "<rtEntryPoint>",
-        '<rtInput><buffer var="position" texture="L::where" /></rtInput><rtEntryPoint>',
-    )
-    folder.write("project.xml", text)
-    library = (folder.path / "lib.mlib").read_text()
-    folder.write(
-        "lib.mlib",
-        library.replace(
-            "<renderTargets>",
-            '<renderTargets><renderTarget name="seen"><SIZE width="64" height="64" /><colors>'
-            '<color name="where" internalFormat="RGBA32F" /></colors></renderTarget>',
-        ),
+    draw_positions(
+        folder,
+        '<rayGen file="builtin" proc="pinhole" />',
+        '<rayGen file="prog.py" proc="camera" />',
     )
     frame = nau_py.Renderer(folder.load()).render()
     on_floor = np.abs(frame.targets["L::where"][..., :3]).sum(axis=-1) > 0
@@ -220,19 +230,23 @@ def test_gbuffer_origin(folder: Folder) -> None:
 
 
 def test_history_resize(folder: Folder) -> None:
-    """Accumulated samples do not outlive the picture that they belong to."""
-    settings = '<ACCUMULATE value="true" />'
-    scene = square("wall", "Wall", [9, 1, 9], [0, 0, 0], TURN)
+    """What earlier frames accumulated does not outlive what they showed: after a move the picture
+    has no stale sample. (A renderer's window keeps its size.)"""
+    scene = square("wall", "Wall", [0.7, 1, 0.7], [0, 0, 0], TURN)
     material = {"Wall": colour("EMISSION", 0.25, 0.5, 1.0, 1.0)}
-    small = studio(folder, scene, material, settings=settings, size=(8, 8), spp=4)
-    renderer = nau_py.Renderer(small)
-    for index in range(3):
-        frame = renderer.render(index)
-    assert frame.targets["L::out"].shape == (8, 8, 4)
-    large = studio(folder, scene, material, settings=settings, size=(12, 10), spp=4)
-    found = nau_py.Renderer(large).render(1).targets["L::out"]
-    assert found.shape == (10, 12, 4)
-    np.testing.assert_array_equal(found[..., :3], np.broadcast_to([0.25, 0.5, 1.0], (10, 12, 3)))
+    settings = '<ACCUMULATE value="true" />'
+    studio(folder, scene, material, settings=settings, size=(16, 16), spp=4)
+    text = (folder.path / "project.xml").read_text()
+    folder.write("project.xml", text.replace('<scene name="S">', '<scene name="S" type="Scene">'))
+    project = folder.load()
+    place = np.array([[0.7, 0, 0, 0.9], [0, 0, -0.7, 0], [0, 1, 0, 0], [0, 0, 0, 1]], float)
+    renderer, fresh = nau_py.Renderer(project), nau_py.Renderer(project)
+    before = renderer.render(2).targets["L::out"]
+    renderer.move("wall", place)
+    fresh.move("wall", place)
+    found = renderer.render(3).targets["L::out"]
+    np.testing.assert_array_equal(found, fresh.render(0).targets["L::out"])
+    assert (found != before).any()
 
 
 def test_pixel_centre(folder: Folder) -> None:
@@ -246,26 +260,7 @@ def test_pixel_centre(folder: Folder) -> None:
         camera='<POSITION x="0.3" y="0.2" z="3" />',
         size=(48, 40),
     )
-    text = (folder.path / "project.xml").read_text()
-    text = text.replace(
-        '<pass name="trace"',
-        '<pass name="choose" class="mask"><camera name="C" /><scenes><scene name="S" /></scenes>'
-        '<renderTarget name="seen" fromLibrary="L" /></pass><pass name="trace"',
-    ).replace('file="builtin" proc="emission"', 'file="prog.py" proc="where"')
-    text = text.replace(
-        "<rtEntryPoint>",
-        '<rtInput><buffer var="position" texture="L::where" /></rtInput><rtEntryPoint>',
-    )
-    folder.write("project.xml", text)
-    library = (folder.path / "lib.mlib").read_text()
-    folder.write(
-        "lib.mlib",
-        library.replace(
-            "<renderTargets>",
-            '<renderTargets><renderTarget name="seen"><SIZE width="48" height="40" /><colors>'
-            '<color name="where" internalFormat="RGBA32F" /></colors></renderTarget>',
-        ),
-    )
+    draw_positions(folder, 'file="builtin" proc="emission"', 'file="prog.py" proc="where"')
     frame = nau_py.Renderer(folder.load()).render()
     raster, traced = frame.targets["L::where"][..., :3], frame.targets["L::out"][..., :3]
     both = (np.abs(raster).sum(axis=-1) > 0) & (np.abs(traced).sum(axis=-1) > 0)

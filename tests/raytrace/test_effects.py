@@ -15,7 +15,7 @@ from tests.raytrace.studio import box, colour, picture, program, sphere, square,
 WHITE = (1.0, 1.0, 1.0)
 
 
-@pytest.mark.parametrize("roughness", [0.0, 1e-4, 0.2, 0.5, 0.8, 1.0])
+@pytest.mark.parametrize("roughness", [0.2, 0.5, 0.8])  # the extremes: tests/hard
 def test_glossy_white_furnace(folder: Folder, roughness: float) -> None:
     """SPECULAR 1 in a white world shows 1: no energy is lost to masking or gained."""
     material = colour("SPECULAR", 1.0, 1.0, 1.0, 1.0) + colour("ROUGHNESS", roughness)

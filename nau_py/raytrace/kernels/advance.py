@@ -38,6 +38,7 @@ from nau_py.raytrace.kernels.scatter import (
     dimension,
     glossy,
     mirror,
+    pass_through,
     reradiate,
 )
 from nau_py.raytrace.kernels.shade import (
@@ -78,24 +79,12 @@ from nau_py.raytrace.kernels.tables import (
     media_of,
     origin_of,
     path_at,
-    set_origin,
     set_weight,
     specular_of,
     weight_of,
 )
 from nau_py.raytrace.kernels.vec import dot, minus, scaled, times
 from nau_py.raytrace.kernels.visibility import MAX_LAYERS, count, finite, opacity, visibility
-
-
-@inner
-def pass_through(scene: Any, path: Any) -> None:
-    """Send the path on behind an ignored hit, in the same direction."""
-    p, n, bound = surface_point(scene, int(path.triangle), float(path.u), float(path.v))
-    set_origin(path, spawn(p, n, bound, heading_of(path)))
-    path.tmax = max(path.tmax - path.t, np.float32(0.0))
-    path.travelled += path.t
-    path.layers += 1
-    path.status = TRACE
 
 
 @inner
@@ -286,6 +275,19 @@ def follow(scene: Any, tile: Any, ray_type: int, path: Any) -> bool:
     return shade(scene, tile, ray_type, code, path)
 
 
+@inner
+def finish(scene: Any, tile: Any, ray_type: int, path: Any) -> None:
+    """Follow ``path``, and what splits off it, to the end."""
+    tile.top = 0
+    while follow(scene, tile, ray_type, path):
+        pass
+    while tile.top > 0:
+        tile.top -= 1
+        copy_path(path, path_at(tile.stack, tile.top))
+        while follow(scene, tile, ray_type, path):
+            pass
+
+
 @kernel
 def advance(
     scenes: NDArray[Any],
@@ -312,14 +314,7 @@ def advance(
                 before[k] = f32(tile.radiance, at + k)
             for k in range(COUNTERS):
                 saved[k] = i64(tile.counts, k)
-        tile.top = 0
-        while follow(scene, tile, ray_type, path):
-            pass
-        while tile.top > 0:
-            tile.top -= 1
-            copy_path(path, path_at(tile.stack, tile.top))
-            while follow(scene, tile, ray_type, path):
-                pass
+        finish(scene, tile, ray_type, path)
         if tile.waiting > tile.capacity:
             copy_path(path, current[0])
             for k in range(4):
@@ -352,11 +347,4 @@ def march(
         for k in range(items[i].count):
             start(cameras[0], lens, rule, side, scene.seed, width, flat, first + k, at, path)
             at += 1
-            tile.top = 0
-            while follow(scene, tile, 0, path):
-                pass
-            while tile.top > 0:
-                tile.top -= 1
-                copy_path(path, path_at(tile.stack, tile.top))
-                while follow(scene, tile, 0, path):
-                    pass
+            finish(scene, tile, 0, path)

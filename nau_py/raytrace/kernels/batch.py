@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.raytrace.kernels.advance import pass_through
 from nau_py.raytrace.kernels.embree import RAY_FLOATS, blocked, hit, nearest
 from nau_py.raytrace.kernels.jit import V3, inner, kernel
 from nau_py.raytrace.kernels.sampling import uniform
+from nau_py.raytrace.kernels.scatter import pass_through
 from nau_py.raytrace.kernels.surface import attribute, facing, shading_normal, spawn, surface_point
 from nau_py.raytrace.kernels.tables import CANDIDATE, weight_of
 from nau_py.raytrace.kernels.texture import lookup

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from nau_py.raytrace.kernels.jit import V3, inner, kernel
 from nau_py.raytrace.kernels.memory import f64
 from nau_py.raytrace.kernels.sampling import sobol2
-from nau_py.raytrace.kernels.vec import dot, unit
+from nau_py.raytrace.kernels.vec import cross, dot, unit
 
 SMOOTH = 1e-3
 """GGX alpha up to which a surface is a perfect mirror."""
@@ -60,11 +60,7 @@ def visible_normal(w: V3, alpha: float, x: float, y: float) -> V3:
         a = (-v[1] * k, v[0] * k, 0.0)
     else:
         a = (1.0, 0.0, 0.0)
-    b = (
-        v[1] * a[2] - v[2] * a[1],
-        v[2] * a[0] - v[0] * a[2],
-        v[0] * a[1] - v[1] * a[0],
-    )
+    b = cross(v, a)
     r, phi = sqrt(x), 2.0 * pi * y
     p1, p2 = r * cos(phi), r * sin(phi)
     s = 0.5 * (1.0 + v[2])

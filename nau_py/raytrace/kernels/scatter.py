@@ -13,7 +13,7 @@ from nau_py.raytrace.kernels.jit import V3, inner
 from nau_py.raytrace.kernels.lights import INVERSE_PI
 from nau_py.raytrace.kernels.sampling import cosine_hemisphere, sobol2
 from nau_py.raytrace.kernels.shade import HIT_DIMENSIONS, banded
-from nau_py.raytrace.kernels.surface import facing, kept_above, spawn
+from nau_py.raytrace.kernels.surface import facing, kept_above, spawn, surface_point
 from nau_py.raytrace.kernels.tables import (
     INDIRECT,
     REFLECTION,
@@ -70,6 +70,17 @@ def leave(path: Any, position: V3, face: V3, bound: float, direction: V3, kind: 
     path.depth += 1
     path.layers = 0
     path.kind = kind
+    path.status = TRACE
+
+
+@inner
+def pass_through(scene: Any, path: Any) -> None:
+    """Send the path on behind an ignored hit, in the same direction."""
+    p, n, bound = surface_point(scene, int(path.triangle), float(path.u), float(path.v))
+    set_origin(path, spawn(p, n, bound, heading_of(path)))
+    path.tmax = max(path.tmax - path.t, np.float32(0.0))
+    path.travelled += path.t
+    path.layers += 1
     path.status = TRACE
 
 
@@ -286,12 +297,7 @@ def dielectric(
             replace_medium(path, -1, owner)
         else:
             replace_medium(path, owner, -1)
-        depth = path.depth
-        travelled = path.travelled + path.t
-        leave(path, position, face, bound, d, path.kind)
-        path.depth = depth
-        path.layers += 1
-        path.travelled = travelled
+        pass_through(scene, path)
         return True
     eta = behind_index / before
     cosine = min(abs(dot(normal, d)), 1.0)
