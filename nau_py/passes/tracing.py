@@ -297,7 +297,8 @@ def store_colours(target: Target, pixels: NDArray[np.int64], colours: NDArray[np
     """Scatter colours into the first colour texture; the other pixels get the clear value."""
     texture_ = target.textures[target.colors[0].name]
     count = target.width * target.height
-    image = np.tile(np.array(target.clear, np.float32), (count, 1))
+    image = np.empty((count, 4), np.float32)
+    image[:] = target.clear
     image[pixels] = colours
     channels = texture_.format.channels
     shaped = image.reshape(target.height, target.width, 4)[:, :, :channels]

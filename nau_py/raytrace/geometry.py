@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -32,7 +33,7 @@ class Dropped:
             self.first.setdefault(reason, (owner, int(np.argmax(faces))))
 
 
-@dataclass(slots=True)
+@dataclass
 class RayGeometry:
     """All triangles: ``vertices`` float32 (n, 3) and ``triangles`` int32 (m, 3).
 
@@ -57,6 +58,14 @@ class RayGeometry:
     @property
     def first_moving(self) -> int:
         return len(self.triangles) - self.moving
+
+    @cached_property
+    def smooth(self) -> NDArray[np.bool_]:
+        """Which triangles have vertex normals that differ, (m,)."""
+        if self.normal is None:
+            return np.zeros(len(self.triangles), bool)
+        a, b, c = (self.normal[self.triangles[:, k]] for k in range(3))
+        return np.asarray(((a != b) | (a != c)).any(axis=1))
 
 
 def _joined(parts: list[dict[str, Any]], counts: list[int], name: str) -> F32 | None:

@@ -222,63 +222,27 @@ class Hits:
         the ray type's name). Rays longer than MAX_DEPTH bring 0; a miss without a miss program
         brings ``initial``. ``where``, bool (n,): only these hits send one, the others get 0.
         """
-        if where is not None and not where.all():
-            return self._trace_some(np.flatnonzero(where), ray_type, direction, tmax, kind, initial)
-        wide = np.ascontiguousarray(
-            np.broadcast_to(np.asarray(direction, np.float32), (len(self), 3))
-        )
-        position, face, bound = self._surface
-        origin, unit = np.empty((2, len(self), 3), np.float32)
-        batch.departures(position, face, bound, wide, origin, unit)
-        rays = Rays(
-            self.rays.tracer,
-            origin,
-            unit,
-            self.rays.pixel,
-            self.rays.sample,
-            self.depth + 1,
-            ray_type,
-        )
-        limit = None if tmax is None else np.broadcast_to(np.asarray(tmax, np.float32), len(self))
-        return self.rays.tracer.trace(rays, limit, kind, initial)
-
-    def _trace_some(
-        self,
-        chosen: NDArray[np.int64],
-        ray_type: str,
-        direction: F32,
-        tmax: F32 | float | None,
-        kind: str | None,
-        initial: float,
-    ) -> F32:
-        """:meth:`trace` from the hits ``chosen``; the others get 0."""
         result = np.zeros((len(self), 4), np.float32)
+        if where is not None and np.shape(where) != (len(self),):
+            raise ValueError(f"where has shape {np.shape(where)}, not ({len(self)},)")
+        chosen = np.arange(len(self)) if where is None else np.flatnonzero(where)
         if not len(chosen):
             return result
-        rays = self.rays
-        some = Rays(
-            rays.tracer,
-            rays.origin[chosen],
-            rays.direction[chosen],
-            rays.pixel[chosen],
-            rays.sample[chosen],
-            rays.depth,
-            rays.ray_type,
-        )
-        part = Hits(
-            some,
-            self.triangle[chosen],
-            self.u[chosen],
-            self.v[chosen],
-            self.t[chosen],
-            self.material,
-        )
-        if "_surface" in self.__dict__:
-            part.__dict__["_surface"] = tuple(a[chosen] for a in self._surface)
-        wide = np.asarray(direction, np.float32)
-        own = wide[chosen] if wide.ndim == 2 else wide
-        limit = tmax[chosen] if isinstance(tmax, np.ndarray) and tmax.ndim else tmax
-        result[chosen] = part.trace(ray_type, own, limit, kind, initial)
+        wide = np.ascontiguousarray(np.atleast_2d(direction), np.float32)
+        if wide.shape not in ((1, 3), (len(self), 3)):
+            raise ValueError(f"directions have shape {wide.shape}, not (3,) or ({len(self)}, 3)")
+        origin, unit = np.empty((2, len(chosen), 3), np.float32)
+        batch.departures_of(chosen, *self._surface, wide, origin, unit)
+        pixel, sample = self.rays.pixel, self.rays.sample
+        limit = tmax if tmax is None else np.broadcast_to(np.asarray(tmax, "f4"), len(self))
+        if len(chosen) < len(self):
+            pixel, sample = pixel[chosen], sample[chosen]
+            limit = limit if limit is None else limit[chosen]
+        tracer = self.rays.tracer
+        rays = Rays(tracer, origin, unit, pixel, sample, self.depth + 1, ray_type)
+        if len(chosen) == len(self):
+            return tracer.trace(rays, limit, kind, initial)
+        result[chosen] = tracer.trace(rays, limit, kind, initial)
         return result
 
 

@@ -16,6 +16,7 @@ from nau_py.raytrace.camera import CameraRays
 from nau_py.raytrace.hits import Launch
 from nau_py.raytrace.kernels import launch as kernel
 from nau_py.raytrace.kernels import tables as t
+from nau_py.raytrace.kernels.tables import LANES
 from nau_py.raytrace.programs import BoundProgram
 from nau_py.raytrace.scene import Scene
 from nau_py.raytrace.service import MainThread
@@ -143,9 +144,11 @@ class Work:
     service: MainThread | None = None
     """Serves what tiles ask of the main thread while they run."""
 
-    def tile(self, items: NDArray[Any], estimate: Estimate, part: slice) -> RayCounts:
-        """Trace the samples ``items`` and add them to ``part`` of ``estimate``."""
+    def tile(self, items: NDArray[Any], estimate: Estimate, part: slice, shift: int) -> RayCounts:
+        """Trace the samples ``items``, those of the same pixel >> ``shift`` together, and add them
+        to ``part`` of ``estimate``."""
         tracer = self.tracers.mine(self.scene)
+        tracer.shift = shift
         total = int(items["count"].sum())
         radiance = tracer.results(total)
         with np.errstate(all="ignore"):  # what is not finite is counted, not printed
@@ -238,10 +241,12 @@ def run_launch(
     found.estimate.taken += items["count"]
     found.taken += int(items["count"].sum())
     suits = PYTHON_TILE if work.scene.tables.record["asks_python"][0] else COMPILED_TILE
-    parts = _parts(items["count"], settings.tile or suits)
+    shift = bundle_shift(int(items["count"].max(initial=1)))
     threads = settings.threads or os.cpu_count() or 1
+    tile = settings.tile or _even(int(items["count"].sum()), suits, threads)
+    parts = _parts(items, tile, shift)
     with ThreadPoolExecutor(max_workers=threads) as pool:
-        tiles = [pool.submit(work.tile, items[p], found.estimate, p) for p in parts]
+        tiles = [pool.submit(work.tile, items[p], found.estimate, p, shift) for p in parts]
         done = work.service.results(tiles) if work.service else (t.result() for t in tiles)
         try:
             for part, counts in zip(parts, done):
@@ -255,14 +260,31 @@ def run_launch(
     return found
 
 
-def _parts(counts: NDArray[np.int32], tile: int) -> list[slice]:
-    """Runs of whole pixels with about ``tile`` samples each."""
-    ends = np.cumsum(counts, dtype=np.int64)
+def bundle_shift(samples: int) -> int:
+    """Neighbours whose samples are traced together, as a power of two: a packet should be full."""
+    return max((LANES // max(samples, 1)).bit_length() - 1, 0)
+
+
+def _even(samples: int, tile: int, threads: int) -> int:
+    """The size of at most about ``tile`` that gives every thread as many tiles, where there are
+    several."""
+    if samples <= tile:
+        return tile
+    rounds = -(-samples // (tile * threads))
+    return max(-(-samples // max(rounds * threads, 1)), 1)
+
+
+def _parts(items: NDArray[Any], tile: int, shift: int) -> list[slice]:
+    """Runs of about ``tile`` samples each; pixels that are traced together stay together."""
+    if not len(items):
+        return []
+    starts = np.flatnonzero(np.diff(items["pixel"] >> shift, prepend=-1))
+    ends = np.append(starts[1:], len(items))
+    done = np.cumsum(items["count"], dtype=np.int64)[ends - 1]
     parts: list[slice] = []
-    start = 0
-    while start < len(counts):
-        before = int(ends[start - 1]) if start else 0
-        stop = max(int(np.searchsorted(ends, before + tile, side="right")), start + 1)
-        parts.append(slice(start, stop))
-        start = stop
+    at, before = 0, 0
+    while at < len(starts):
+        stop = max(int(np.searchsorted(done, before + tile, side="right")), at + 1)
+        parts.append(slice(int(starts[at]), int(ends[stop - 1])))
+        at, before = stop, int(done[stop - 1])
     return parts

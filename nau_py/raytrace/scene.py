@@ -16,7 +16,7 @@ from nau_py.raytrace.geometry import RayGeometry
 from nau_py.raytrace.hits import RayLight, RayMaterial
 from nau_py.raytrace.kernels import tables as t
 from nau_py.raytrace.kernels.bsdf import albedo_table
-from nau_py.raytrace.kernels.codes import GLOSSY
+from nau_py.raytrace.kernels.codes import GLOSSY, NONE, TRANSPARENCY
 from nau_py.raytrace.programs import BoundProgram
 from nau_py.raytrace.texture import RayTexture
 from nau_py.raytrace.vectors import F32
@@ -153,10 +153,12 @@ def _emitters(
     geometry: RayGeometry, materials: NDArray[Any]
 ) -> tuple[NDArray[np.int32], F64, NDArray[np.float64]]:
     """Triangles of materials with EMISSION, their cumulative power, density by triangle."""
-    density = np.zeros(len(geometry.triangles))
     strength = materials["emission"].astype(np.float64).sum(axis=1)
     strength = np.where(np.isfinite(strength) & (strength > 0), strength, 0.0)
-    chosen = np.flatnonzero(strength[geometry.material] > 0) if len(materials) else np.zeros(0, int)
+    density = np.zeros(len(geometry.triangles))
+    if not strength.any():
+        return np.zeros(0, np.int32), np.zeros(1), density
+    chosen = np.flatnonzero(strength[geometry.material] > 0)
     corners = geometry.vertices[geometry.triangles[chosen]].astype(np.float64)
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.sqrt((cross**2).sum(axis=1)) / 2
@@ -171,14 +173,6 @@ def _emitters(
 
 def _attribute(values: F32 | None) -> F32:
     return np.zeros((0, 4), np.float32) if values is None else np.ascontiguousarray(values)
-
-
-def _smooth(geometry: RayGeometry) -> NDArray[np.bool_]:
-    """Which triangles have vertex normals that differ."""
-    if geometry.normal is None:
-        return np.zeros(len(geometry.triangles), bool)
-    a, b, c = (geometry.normal[geometry.triangles[:, k]] for k in range(3))
-    return np.asarray(((a != b) | (a != c)).any(axis=1))
 
 
 def make_tables(scene: Scene) -> Tables:
@@ -198,9 +192,10 @@ def make_tables(scene: Scene) -> Tables:
     for row, name in enumerate(types):
         program = scene.program(name, MISS, 0)
         miss[row] = program.code if program else 0
-    has_any = np.where((any_hit == t.USER).any(axis=1), 2, (any_hit != 0).any(axis=1))
+    has_any = np.where(any_hit == t.USER, t.PYTHON, any_hit != NONE)
+    has_any = np.where(any_hit == TRANSPARENCY, t.PARTIAL, has_any).max(axis=1)
     visibility = ~(closest != 0).any(axis=1)
-    deferred = (has_any == 2) | (miss == t.USER) | ~visibility
+    deferred = (has_any == t.PYTHON) | (miss == t.USER) | ~visibility
     shadow = next((k for k, name in enumerate(types) if name.lower() == "shadow"), -1)
     if shadow < 0:  # rays of the radiance type ask what is in the way, by its built-in any hits
         deferred = np.zeros(len(types), bool)
@@ -226,7 +221,7 @@ def make_tables(scene: Scene) -> Tables:
             "owner": geometry.material,
             "normals": _attribute(geometry.normal),
             "uvs": _attribute(geometry.uv),
-            "smooth": _smooth(geometry),
+            "smooth": geometry.smooth,
             "materials": materials,
             "textures": textures,
             "texels": texels,

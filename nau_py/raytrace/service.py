@@ -5,11 +5,10 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Future
-from queue import Empty, SimpleQueue
+from queue import SimpleQueue
 from typing import Any
 
-_PATIENCE = 0.002
-"""Seconds to wait for a request before looking whether the tiles are done."""
+Request = tuple[Future[Any], Callable[..., Any], tuple[Any, ...]]
 
 
 class MainThread:
@@ -17,8 +16,8 @@ class MainThread:
 
     def __init__(self) -> None:
         self._owner = threading.get_ident()
-        self._requests: SimpleQueue[tuple[Future[Any], Callable[..., Any], tuple[Any, ...]]]
-        self._requests = SimpleQueue()
+        self._requests: SimpleQueue[Request | None] = SimpleQueue()
+        """What is asked for; None where a tile has ended, so that waiting needs no clock."""
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
         """What ``function`` returns or raises on the main thread; waits for it."""
@@ -30,28 +29,32 @@ class MainThread:
 
     def results(self, futures: list[Future[Any]]) -> Iterator[Any]:
         """The results of ``futures`` in order, serving requests while they are computed."""
+        for future in futures:
+            future.add_done_callback(self._wake)
         for awaited in futures:
             while not awaited.done():
-                self._serve()
+                request = self._requests.get()
+                if request is not None:
+                    _serve(request)
             yield awaited.result()
 
     def abandon(self, futures: list[Future[Any]]) -> None:
         """Cancel ``futures``; those that run get no answer. Returns when they have ended."""
         for future in futures:
+            future.add_done_callback(self._wake)
             future.cancel()
         while not all(future.done() for future in futures):
-            try:
-                waiting, _, _ = self._requests.get(timeout=_PATIENCE)
-            except Empty:
-                continue
-            waiting.set_exception(CancelledError())
+            request = self._requests.get()
+            if request is not None:
+                request[0].set_exception(CancelledError())
 
-    def _serve(self) -> None:
-        try:
-            future, function, arguments = self._requests.get(timeout=_PATIENCE)
-        except Empty:
-            return
-        try:
-            future.set_result(function(*arguments))
-        except BaseException as problem:
-            future.set_exception(problem)
+    def _wake(self, _: Future[Any]) -> None:
+        self._requests.put(None)
+
+
+def _serve(request: Request) -> None:
+    future, function, arguments = request
+    try:
+        future.set_result(function(*arguments))
+    except BaseException as problem:
+        future.set_exception(problem)

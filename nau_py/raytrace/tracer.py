@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,15 +14,31 @@ from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.hits import Hits, Rays
 from nau_py.raytrace.kernels import batch
 from nau_py.raytrace.kernels import tables as t
-from nau_py.raytrace.kernels.advance import advance, march
-from nau_py.raytrace.kernels.embree import RAY_FLOATS
-from nau_py.raytrace.kernels.launch import enqueue
+from nau_py.raytrace.kernels.advance import advance, march, send
+from nau_py.raytrace.kernels.any_hit import filter_address
+from nau_py.raytrace.kernels.embree import CONTEXT, RAY_FLOATS
 from nau_py.raytrace.programs import BoundProgram
 from nau_py.raytrace.scene import Scene
 from nau_py.raytrace.vectors import F32
 
 RECURSION_LIMIT = 64
 MIN_QUEUE = 1024
+ALIGNMENT = 64
+"""Of Embree's packets, bytes."""
+PACKET_BYTES = 4 * ((RAY_FLOATS + 1) * t.LANES + RAY_FLOATS)
+"""A packet of rays, the mask of valid ones, a single ray."""
+_LANES = np.dtype(
+    [
+        ("query", t.QUERY),
+        ("lanes", "i8", t.LANES),
+        ("seen", "f4", t.LANES),
+        ("work", t.PATH, t.LANES),
+        ("stack", t.PATH, t.STACK + t.LANES),
+        ("shadows", t.SHADOW_RAY, t.SHADOWS),
+    ],
+    align=True,
+)
+"""Memory of a bundle."""
 _CODES = {name: code for code, name in enumerate(t.KINDS)}
 
 
@@ -66,11 +83,14 @@ class Tracer:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
+        self.shift = 0
+        """Samples of the same pixel >> shift are traced together."""
         self._counters = np.zeros(t.COUNTERS, np.int64)
         self._named: dict[str, int] = {}
         self._rest = RayCounts()
-        self._stack = np.zeros(t.STACK + 1, t.PATH)
-        self._ray = np.zeros(RAY_FLOATS + 4, np.float32)
+        self._lanes = np.zeros(1, _LANES)
+        self._packet = np.zeros(PACKET_BYTES + ALIGNMENT, np.uint8)
+        self._made = self._addresses()
         self._queues: list[NDArray[Any]] = []
         self._results = np.zeros((0, 4), np.float32)
 
@@ -114,21 +134,25 @@ class Tracer:
             return result
         limit = np.array([np.inf] if tmax is None else tmax, np.float32)
         name = kind or rays.ray_type
-        code = _CODES.get(name, t.OTHER)
-        queue = self.borrow(len(rays))[: len(rays)]
+        code, ray_type = _CODES.get(name, t.OTHER), types.index(rays.ray_type)
+        record = self.scene.tables.record
         origin, direction = (
             np.ascontiguousarray(a, np.float32) for a in (rays.origin, rays.direction)
         )
-        enqueue(
-            origin, direction, limit, rays.pixel, rays.sample, rays.depth, code, initial, queue
-        )  # fmt: skip
+        pixel, sample, depth = rays.pixel, rays.sample, rays.depth
+
+        def step(tile: NDArray[Any]) -> None:
+            send(
+                record, ray_type, origin, direction, limit, pixel, sample, depth, code, initial,
+                tile,
+            )  # fmt: skip
+
         before = int(self._counters[t.OTHER])
-        self.follow(queue, types.index(rays.ray_type), result, name)
+        self._drive(step, len(rays), ray_type, result, name)
         if code == t.OTHER:
             count = int(self._counters[t.OTHER]) - before
             self._counters[t.OTHER] = before
             self._named[name] = self._named.get(name, 0) + count
-        self.give_back(queue)
         return result
 
     def borrow(self, size: int) -> NDArray[Any]:
@@ -142,10 +166,24 @@ class Tracer:
 
     def _tile(self, radiance: F32) -> NDArray[Any]:
         """The record of addresses that kernels work with."""
-        tile = np.zeros(1, t.TILE)
-        tile["ray"] = -(-self._ray.ctypes.data // 16) * 16  # Embree wants 16-byte alignment
-        tile["counts"], tile["stack"] = self._counters.ctypes.data, self._stack.ctypes.data
-        tile["radiance"] = radiance.ctypes.data
+        tile = self._made.copy()
+        tile["radiance"], tile["shift"] = radiance.ctypes.data, self.shift
+        return tile
+
+    def _addresses(self) -> NDArray[Any]:
+        tile, lanes = np.zeros(1, t.TILE), self._lanes.ctypes.data
+        packet = -(-self._packet.ctypes.data // ALIGNMENT) * ALIGNMENT
+        tile["packet"], tile["valid"] = packet, packet + 4 * RAY_FLOATS * t.LANES
+        tile["ray"] = packet + 4 * (RAY_FLOATS + 1) * t.LANES
+        for name in _LANES.names or ():
+            tile[name] = lanes + _LANES.fields[name][1]  # type: ignore[index]
+        query, counts = self._lanes["query"], self._counters.ctypes.data
+        query["features"], query["context"] = -1, tile["query"] + np.uint64(CONTEXT)
+        query["instance"], query["instance_primitive"] = -1, -1
+        query["filter"], query["counts"] = filter_address(), counts
+        query["scene"] = self.scene.tables.record.ctypes.data
+        tile["counts"] = counts
+        batch.prepare(tile)
         return tile
 
     def march(
@@ -157,31 +195,46 @@ class Tracer:
         radiance: F32,
     ) -> None:
         """Samples of ``items`` by compiled programs alone; ``rule``: lens, sampler, strata."""
-        record, current = self.scene.tables.record, np.zeros(1, t.PATH)
-        march(record, camera, *rule, width, items, self._tile(radiance), current)
+        march(self.scene.tables.record, camera, *rule, width, items, self._tile(radiance))
 
     def follow(
         self, queue: NDArray[Any], ray_type: int, radiance: F32, name: str = "primary"
     ) -> None:
         """Follow the paths of ``queue`` to their ends; add what they bring to ``radiance``."""
+
+        def step(tile: NDArray[Any]) -> None:
+            advance(self.scene.tables.record, ray_type, queue, tile)
+
+        self._drive(step, len(queue), ray_type, radiance, name)
+
+    def _drive(
+        self,
+        step: Callable[[NDArray[Any]], None],
+        size: int,
+        ray_type: int,
+        radiance: F32,
+        name: str,
+    ) -> None:
+        """Repeat a kernel's ``step`` until ``size`` rays are done, and answer for Python."""
         tile = self._tile(radiance)
-        deferred = self.borrow(len(queue) + 1)
-        current = np.zeros(1, t.PATH)
-        while tile["next"][0] < len(queue):
+        asks = bool(self.scene.tables.record["asks_python"][0])
+        deferred = self.borrow(size + 1 if asks else 1)
+        while tile["next"][0] < size:
             tile["waiting"], tile["deferred"] = 0, deferred.ctypes.data
             tile["capacity"] = len(deferred) - 1
-            advance(self.scene.tables.record, ray_type, queue, tile, current)
+            step(tile)
             waiting = int(tile["waiting"][0])
             if waiting:
                 again = self._answer(deferred[:waiting], ray_type, radiance, name)
                 if len(again):
                     self.follow(again, ray_type, radiance, name)
-            elif tile["next"][0] < len(queue):  # one path asks more than the queue holds
+            elif tile["next"][0] < size:  # one pixel's paths ask more than the queue holds
                 deferred = np.empty(2 * len(deferred), t.PATH)
         self.give_back(deferred)
 
     def _answer(self, paths: NDArray[Any], ray_type: int, radiance: F32, name: str) -> NDArray[Any]:
-        """Run the programs that ``paths`` wait for, by material; the paths that go on."""
+        """Run the programs that ``paths`` wait for, by material; the paths that go on, in the order
+        of their results."""
         materials = max(len(self.scene.materials), 1)
         depths = RECURSION_LIMIT + 2
         keys = np.empty(len(paths), np.int32)
@@ -192,56 +245,58 @@ class Tracer:
         batch.sort_by(keys, len(starts) - 1, order, starts)
         going: list[NDArray[Any]] = []
         for key in np.flatnonzero(np.diff(starts)):
-            group = _rows(paths, order[starts[key] : starts[key + 1]])
+            group = order[starts[key] : starts[key + 1]]
             status, material = int(key) // (depths * materials), int(key) % materials
             if status == t.CANDIDATE:
-                going += self._candidates(group, ray_type, material)
+                found = self._candidates(_rows(paths, group), ray_type, material)
+                going += [part for part in found if len(part)]
                 continue
+            program = None
             if status == t.HIT:
                 program = self.scene.program(self._type(ray_type), CLOSEST_HIT, material)
-                hits = self._hits(group, ray_type, material)
-                values = self._radiance(program, hits, group)
+                values = self._radiance(program, self._hits(paths, group, ray_type, material))
             elif status == t.MISSED:
                 program = self.scene.program(self._type(ray_type), MISS, 0)
-                values = self._radiance(program, self._rays(group, ray_type), group)
+                values = self._radiance(program, self._rays(paths, group, ray_type))
             else:
-                values = self._visibility(group, ray_type)
-                program = None
+                values = self._visibility(paths, group, ray_type)
             bad = np.zeros(2, np.int64)
-            batch.scatter(radiance, group, values, status == t.OCCLUSION, bad)
+            batch.scatter(radiance, paths, group, values, status == t.OCCLUSION, bad)
             if program is not None:
                 self._rest.blame(program.label, int(bad[0]), int(bad[1]))
-        return np.concatenate(going) if going else paths[:0]
+        if not going:
+            return paths[:0]
+        again = np.concatenate(going)
+        return _rows(again, np.argsort(again["index"], kind="stable"))
 
     def _type(self, ray_type: int) -> str:
         return self.scene.ray_types[ray_type]
 
-    def _rays(self, paths: NDArray[Any], ray_type: int) -> Rays:
-        return Rays(
-            self,
-            np.ascontiguousarray(paths["origin"]),
-            np.ascontiguousarray(paths["direction"]),
-            np.ascontiguousarray(paths["pixel"]),
-            np.ascontiguousarray(paths["sample"]),
-            int(paths["depth"][0]),
-            self._type(ray_type),
-        )
-
-    def _hits(self, paths: NDArray[Any], ray_type: int, material: int) -> Hits:
-        columns = (np.ascontiguousarray(paths[k]) for k in ("triangle", "u", "v", "t"))
-        triangle, u, v, distance = columns
-        rays = self._rays(paths, ray_type)
+    def _hits(
+        self, paths: NDArray[Any], group: NDArray[np.int64], ray_type: int, material: int
+    ) -> Hits:
+        n = len(group)
+        vectors, numbers = np.empty((2, n, 3), np.float32), np.empty((3, n), np.float32)
+        keys, triangle = np.empty((2, n), np.uint32), np.empty(n, np.int32)
+        batch.unpack(paths, group, vectors, numbers, keys, triangle)
+        depth = int(paths["depth"][group[0]])
+        (origin, direction), (u, v, distance), (pixel, sample) = vectors, numbers, keys
+        rays = Rays(self, origin, direction, pixel, sample, depth, self._type(ray_type))
         return Hits(rays, triangle, u, v, distance, self.scene.materials[material])
 
-    def _radiance(self, program: BoundProgram | None, argument: object, paths: NDArray[Any]) -> F32:
+    def _rays(self, paths: NDArray[Any], group: NDArray[np.int64], ray_type: int) -> Rays:
+        return self._hits(paths, group, ray_type, 0).rays
+
+    def _radiance(self, program: BoundProgram | None, argument: Hits | Rays) -> F32:
         assert program is not None
-        return program.radiance(argument, len(paths))
+        return program.radiance(argument, len(argument))
 
     def _candidates(self, paths: NDArray[Any], ray_type: int, material: int) -> list[NDArray[Any]]:
         """Ask the any-hit program; accepted hits are shaded, ignored ones passed through."""
         program = self.scene.program(self._type(ray_type), ANY_HIT, material)
         assert program is not None
-        accepted = program.accepts(self._hits(paths, ray_type, material), len(paths))
+        everyone = np.arange(len(paths))
+        accepted = program.accepts(self._hits(paths, everyone, ray_type, material), len(paths))
         kept = _rows(paths, np.flatnonzero(accepted))
         ignored = _rows(paths, np.flatnonzero(~accepted))
         kept["status"] = t.SHADE
@@ -249,12 +304,12 @@ class Tracer:
         closest = self.scene.tables.arrays["closest"][ray_type, material] != 0
         return [kept, ignored] if closest else [ignored]
 
-    def _visibility(self, paths: NDArray[Any], ray_type: int) -> F32:
+    def _visibility(self, paths: NDArray[Any], group: NDArray[np.int64], ray_type: int) -> F32:
         """What a light's shadow rays bring: red is the visibility."""
         shadow = int(self.scene.tables.record["shadow_type"][0])
-        rays = self._rays(paths, shadow if shadow >= 0 else ray_type)
+        rays = self._rays(paths, group, shadow if shadow >= 0 else ray_type)
         rays.depth += 1
-        return self.trace(rays, np.ascontiguousarray(paths["tmax"]), "shadow", 0.0)
+        return self.trace(rays, np.ascontiguousarray(paths["tmax"][group]), "shadow", 0.0)
 
 
 class Tracers:

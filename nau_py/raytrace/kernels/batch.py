@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.raytrace.kernels.embree import RAY_FLOATS, blocked, hit, nearest
+from nau_py.raytrace.kernels.embree import RAY_FLOATS, blank, blocked, hit, nearest
 from nau_py.raytrace.kernels.jit import V3, inner, kernel
 from nau_py.raytrace.kernels.sampling import uniform
 from nau_py.raytrace.kernels.scatter import pass_through
 from nau_py.raytrace.kernels.surface import attribute, facing, shading_normal, spawn, surface_point
-from nau_py.raytrace.kernels.tables import CANDIDATE, weight_of
+from nau_py.raytrace.kernels.tables import CANDIDATE, LANES, heading_of, origin_of, weight_of
 from nau_py.raytrace.kernels.texture import lookup
 from nau_py.raytrace.kernels.vec import unit
 from nau_py.raytrace.kernels.visibility import finite
@@ -88,6 +88,34 @@ def departures(
 
 
 @kernel
+def departures_of(
+    chosen: NDArray[np.int64],
+    position: F32,
+    face: F32,
+    bound: F32,
+    direction: F32,
+    origin: F32,
+    unit_direction: F32,
+) -> None:
+    """``departures`` of the surfaces that ``chosen`` lists. ``direction`` has one row, or one a
+    surface."""
+    for k in range(chosen.shape[0]):
+        i = chosen[k]
+        d = unit(vector(direction, i if direction.shape[0] > 1 else 0))
+        o = spawn(vector(position, i), vector(face, i), float(bound[i]), d)
+        for m in range(3):
+            origin[k, m] = o[m]
+            unit_direction[k, m] = d[m]
+
+
+@kernel
+def prepare(tiles: Any) -> None:
+    """Make the rays of a tile's record ready to be filled in."""
+    blank(tiles[0].ray, 1)
+    blank(tiles[0].packet, LANES)
+
+
+@kernel
 def uniforms(
     seed: int,
     pixel: NDArray[np.uint32],
@@ -111,6 +139,31 @@ def group_keys(paths: NDArray[Any], owner: I32, materials: int, depths: int, key
 
 
 @kernel
+def unpack(
+    paths: NDArray[Any],
+    order: NDArray[np.int64],
+    vectors: F32,
+    numbers: F32,
+    keys: NDArray[np.uint32],
+    triangle: I32,
+) -> None:
+    """The paths that ``order`` lists, as arrays: ``vectors`` (2, n, 3) origin and direction,
+    ``numbers`` (3, n) u, v and t, ``keys`` (2, n) pixel and sample, ``triangle`` (n,)."""
+    for i in range(order.shape[0]):
+        path = paths[order[i]]
+        o, d = origin_of(path), heading_of(path)
+        for k in range(3):
+            vectors[0, i, k] = o[k]
+            vectors[1, i, k] = d[k]
+        numbers[0, i] = path.u
+        numbers[1, i] = path.v
+        numbers[2, i] = path.t
+        keys[0, i] = path.pixel
+        keys[1, i] = path.sample
+        triangle[i] = path.triangle
+
+
+@kernel
 def pass_all(scenes: Any, paths: NDArray[Any]) -> None:
     """Send paths on behind their ignored hits."""
     for i in range(paths.shape[0]):
@@ -119,14 +172,20 @@ def pass_all(scenes: Any, paths: NDArray[Any]) -> None:
 
 @kernel
 def scatter(
-    radiance: F32, paths: NDArray[Any], values: F32, visible: bool, bad: NDArray[np.int64]
+    radiance: F32,
+    paths: NDArray[Any],
+    order: NDArray[np.int64],
+    values: F32,
+    visible: bool,
+    bad: NDArray[np.int64],
 ) -> None:
-    """Add what a program returned for ``paths``, weighted; ``visible``: its red is visibility.
+    """Add what a program returned for the paths of ``order``, weighted; ``visible``: its red is
+    visibility.
 
     ``bad`` counts results that are not finite, and holds the first one's pixel.
     """
-    for i in range(paths.shape[0]):
-        path = paths[i]
+    for i in range(order.shape[0]):
+        path = paths[order[i]]
         weight = weight_of(path)
         sound = True
         for k in range(4):
@@ -171,12 +230,13 @@ def intersect(
 ) -> None:
     """Nearest hits; ``tmax`` has one entry, or one a ray."""
     ray = np.empty(RAY_FLOATS, np.float32)
+    blank(ray.ctypes.data, 1)
     for i in range(origin.shape[0]):
         limit = float(tmax[i if tmax.shape[0] > 1 else 0])
         o, d = vector(origin, i), vector(direction, i)
         triangle[i] = -1
         if finite(o) and finite(d):
-            triangle[i] = nearest(scenes[0], ray.ctypes.data, o, d, limit)
+            triangle[i] = nearest(scenes[0], ray.ctypes.data, np.uint64(0), o, d, limit)
         if triangle[i] >= 0:
             t[i], u[i], v[i] = hit(ray.ctypes.data)
 
@@ -185,8 +245,9 @@ def intersect(
 def occluded(scenes: Any, origin: F32, direction: F32, tmax: F32, found: NDArray[np.bool_]) -> None:
     """Whether anything is hit."""
     ray = np.empty(RAY_FLOATS, np.float32)
+    blank(ray.ctypes.data, 1)
     for i in range(origin.shape[0]):
         limit = float(tmax[i if tmax.shape[0] > 1 else 0])
         o, d = vector(origin, i), vector(direction, i)
         if finite(o) and finite(d):
-            found[i] = blocked(scenes[0], ray.ctypes.data, o, d, limit)
+            found[i] = blocked(scenes[0], ray.ctypes.data, np.uint64(0), o, d, limit)

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import numba
-from numba import njit
+from numba import cfunc, njit, types
 
 F = TypeVar("F", bound=Callable[..., object])
 V3 = tuple[float, float, float]
@@ -36,16 +37,33 @@ _FOLDER = numba.config.CACHE_DIR or _cache_folder()
 """Empty where nothing can be kept: kernels are then compiled in every process."""
 
 
-def kernel(function: F) -> F:
-    """Compile ``function``, which Python calls, at its first call: no GIL, IEEE arithmetic."""
+@contextmanager
+def _cached() -> Iterator[bool]:
+    """Where machine code is kept; whether there is such a place."""
     before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, _FOLDER
     try:
-        compiled = njit(nogil=True, cache=bool(_FOLDER), error_model="numpy", fastmath=False)(
-            function
-        )
+        yield bool(_FOLDER)
     finally:
         numba.config.CACHE_DIR = before
-    return cast(F, compiled)
+
+
+def kernel(function: F) -> F:
+    """Compile ``function``, which Python calls, at its first call: no GIL, IEEE arithmetic."""
+    with _cached() as cache:
+        made = njit(nogil=True, cache=cache, error_model="numpy", fastmath=False)(function)
+    return cast(F, made)
+
+
+def callback(function: Callable[[Any], None]) -> int:
+    """Compile ``function`` of one address, which a C library calls; returns where it stands."""
+    with _cached() as cache:
+        made = cfunc(types.void(types.uint64), cache=cache, error_model="numpy")(function)
+    _CALLBACKS.append(made)
+    return int(made.address)
+
+
+_CALLBACKS: list[Any] = []
+"""Compiled callbacks: their code lives as long as they do."""
 
 
 def inner(function: F) -> F:

@@ -165,34 +165,6 @@ def generate(
 
 
 @kernel
-def enqueue(
-    origin: NDArray[np.float32],
-    direction: NDArray[np.float32],
-    tmax: NDArray[np.float32],
-    pixel: NDArray[np.uint32],
-    sample: NDArray[np.uint32],
-    depth: int,
-    kind: int,
-    initial: float,
-    queue: NDArray[Any],
-) -> None:
-    """Paths for the rays that a Python program sends. ``tmax`` has one entry, or one a ray."""
-    for i in range(origin.shape[0]):
-        path = queue[i]
-        reset(path)
-        set_origin(path, (float(origin[i, 0]), float(origin[i, 1]), float(origin[i, 2])))
-        d = (float(direction[i, 0]), float(direction[i, 1]), float(direction[i, 2]))
-        set_heading(path, d)
-        path.tmax = tmax[i if tmax.shape[0] > 1 else 0]
-        path.index = i
-        path.pixel = pixel[i]
-        path.sample = sample[i]
-        path.depth = depth
-        path.kind = kind
-        path.initial = initial
-
-
-@kernel
 def accumulate(
     radiance: NDArray[np.float32],
     items: Any,

@@ -14,6 +14,7 @@ import numba
 import numpy as np
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.core.extending import intrinsic
 
 _WORD = ir.IntType(64)
@@ -97,17 +98,12 @@ def record_at(dtype: np.dtype[Any]) -> Callable[[Any, Any], Any]:
 def copy(dtype: np.dtype[Any]) -> Callable[[Any, Any], None]:
     """``f(to, from)``: one record over another."""
     record = numba.from_dtype(dtype)
-    words = dtype.itemsize // 8
-    assert words * 8 == dtype.itemsize, "records that are copied have a size in whole words"
 
     @intrinsic  # type: ignore[untyped-decorator, unused-ignore]
     def assign(context: Any, to: Any, source: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-            block = ir.ArrayType(_WORD, words).as_pointer()
-            target, origin = (builder.bitcast(a, block) for a in args)
-            for k in range(words):
-                at = [ir.Constant(ir.IntType(32), 0), ir.Constant(ir.IntType(32), k)]
-                builder.store(builder.load(builder.gep(origin, at)), builder.gep(target, at))
+            size = ir.Constant(_WORD, dtype.itemsize)
+            cgutils.raw_memcpy(builder, args[0], args[1], size, 1, align=4)
             return context.get_dummy_value()
 
         return types.void(record, record), generate

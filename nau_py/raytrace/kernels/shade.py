@@ -1,7 +1,7 @@
 """Shading that ends a path: the default look, Phong, lights with shape, ambient occlusion.
 
-Shadow rays whose programs are Python's are not traced here: they go to the deferred queue with
-the light that they would bring.
+Shadow rays are not traced here: they are collected for the bundle (``shadows.py``), or, where
+their programs are Python's, go to the deferred queue with the light that they would bring.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from nau_py.raytrace.kernels.jit import V3, inner
 from nau_py.raytrace.kernels.lights import arriving
 from nau_py.raytrace.kernels.memory import f32, i8, put_f32
 from nau_py.raytrace.kernels.sampling import cosine_hemisphere, sobol2
+from nau_py.raytrace.kernels.shadows import collect
 from nau_py.raytrace.kernels.surface import facing, spawn
 from nau_py.raytrace.kernels.tables import (
     AMBIENT,
     OCCLUSION,
     RECTANGLE,
-    SHADOW,
     copy_path,
     diffuse_of,
     emission_of,
@@ -36,7 +36,7 @@ from nau_py.raytrace.kernels.tables import (
 )
 from nau_py.raytrace.kernels.texture import RGBA
 from nau_py.raytrace.kernels.vec import basis, dot, in_frame, plus, reflected, scaled, times, unit
-from nau_py.raytrace.kernels.visibility import shadow_type_of, visibility
+from nau_py.raytrace.kernels.visibility import count, shadow_type_of, sound, visibility
 
 AMBIENT_FACTOR = 0.3
 LIGHT_DIMENSION = 0x1000
@@ -87,28 +87,26 @@ def light_term(
     tile: Any,
     ray_type: int,
     path: Any,
+    source: int,
     origin: V3,
     direction: V3,
     tmax: float,
     light: V3,
 ) -> None:
-    """Add ``light`` if ``origin`` sees it along ``direction``, up to ``tmax`` lengths of it."""
+    """Add ``light`` if ``origin`` sees it along ``direction``, up to ``tmax`` lengths of it.
+    ``source``: the number of the light."""
     if light[0] == 0.0 and light[1] == 0.0 and light[2] == 0.0:
         return
-    asks = shadow_type_of(scene, ray_type)
-    if i8(scene.deferred_shadows, asks) != 0:
+    w, c = weight_of(path), banded(path, light)
+    arriving = (w[0] * c[0], w[1] * c[1], w[2] * c[2])
+    if i8(scene.deferred_shadows, shadow_type_of(scene, ray_type)) != 0:
         late = defer(tile, path, OCCLUSION)
         set_origin(late, origin)
         set_heading(late, direction)
         late.tmax = tmax
-        w, c = weight_of(path), banded(path, light)
-        set_weight(late, (w[0] * c[0], w[1] * c[1], w[2] * c[2], 0.0))
+        set_weight(late, (arriving[0], arriving[1], arriving[2], 0.0))
         return
-    seen = visibility(
-        scene, tile, asks, SHADOW, origin, direction, tmax, path.pixel, path.sample, int(path.depth)
-    )
-    if seen > 0.0:
-        add(tile, path, scaled(light, seen), 0.0)
+    collect(scene, tile, ray_type, path, source, origin, direction, tmax, arriving)
 
 
 @inner
@@ -161,7 +159,7 @@ def default_look(
             add(tile, path, lit, 0.0)
         else:
             tmax = 1.0 if distance < INFINITE else INFINITE
-            light_term(scene, tile, ray_type, path, origin, to, tmax, lit)
+            light_term(scene, tile, ray_type, path, 0, origin, to, tmax, lit)
 
 
 @inner
@@ -197,7 +195,7 @@ def direct_light(
                 continue
             tmax = 1.0 if distance < INFINITE else INFINITE
             brought = scaled(times(albedo, colour), cosine / samples)
-            light_term(scene, tile, ray_type, path, origin, to, tmax, brought)
+            light_term(scene, tile, ray_type, path, index, origin, to, tmax, brought)
 
 
 @inner
@@ -213,12 +211,12 @@ def ambient_occlusion(
     albedo: V3,
 ) -> None:
     """Cosine-weighted sky visibility within the pass's OCCLUSION_DISTANCE, times the albedo."""
-    count = max(int(scene.light_samples), 1)
+    samples = max(int(scene.light_samples), 1)
     s, t = basis(normal)
     geometric = facing(face, heading_of(path))
     open_ = 0.0
-    for k in range(count):
-        number = np.uint32(path.sample * count + k)
+    for k in range(samples):
+        number = np.uint32(path.sample * samples + k)
         dimension = np.uint32(HIT_DIMENSIONS * path.depth)
         x, y = sobol2(scene.seed, path.pixel, number, dimension)
         d = cosine_hemisphere(x, y)
@@ -226,8 +224,11 @@ def ambient_occlusion(
         if not dot(geometric, to) > 0.0:
             continue
         origin = spawn(position, face, bound, to)
+        if not sound(tile, origin, to):
+            continue
+        count(tile, AMBIENT)
         open_ += visibility(
-            scene, tile, shadow_type_of(scene, ray_type), AMBIENT, origin, to,
+            scene, tile, shadow_type_of(scene, ray_type), origin, to,
             float(scene.occlusion_distance), path.pixel, path.sample, int(path.depth),
         )  # fmt: skip
-    add(tile, path, scaled(albedo, open_ / count), 1.0)
+    add(tile, path, scaled(albedo, open_ / samples), 1.0)

@@ -11,7 +11,7 @@ from typing import Any
 from nau_py.raytrace.kernels.jit import V3, inner
 from nau_py.raytrace.kernels.memory import f32, i8, i32
 from nau_py.raytrace.kernels.tables import texture_at
-from nau_py.raytrace.kernels.texture import RGBA, lookup
+from nau_py.raytrace.kernels.texture import RGBA, alpha, lookup
 from nau_py.raytrace.kernels.vec import cross, dot, unit
 
 C0 = 2.0**-24
@@ -108,15 +108,36 @@ def facing(n: V3, direction: V3) -> V3:
 
 
 @inner
+def texture_point(scene: Any, triangle: int, u: float, v: float) -> tuple[float, float]:
+    """texCoord0 at a hit; zero where the mesh has none."""
+    if scene.uvs_count == 0:
+        return 0.0, 0.0
+    a = 4 * i32(scene.triangles, 3 * triangle)
+    b = 4 * i32(scene.triangles, 3 * triangle + 1)
+    c = 4 * i32(scene.triangles, 3 * triangle + 2)
+    w = 1.0 - u - v
+    return (
+        f32(scene.uvs, a) * w + f32(scene.uvs, b) * u + f32(scene.uvs, c) * v,
+        f32(scene.uvs, a + 1) * w + f32(scene.uvs, b + 1) * u + f32(scene.uvs, c + 1) * v,
+    )
+
+
+@inner
 def texel(scene: Any, material: Any, triangle: int, u: float, v: float) -> RGBA:
     """The texture of unit 0 at a hit; white where the material has none."""
     if material.texture < 0:
         return 1.0, 1.0, 1.0, 1.0
-    s, t = 0.0, 0.0
-    if scene.uvs_count > 0:
-        c = attribute(scene.uvs, scene, triangle, u, v)
-        s, t = c[0], c[1]
+    s, t = texture_point(scene, triangle, u, v)
     return lookup(texture_at(scene.textures, material.texture), scene.texels, s, t)
+
+
+@inner
+def texel_alpha(scene: Any, material: Any, triangle: int, u: float, v: float) -> float:
+    """The last component of ``texel``."""
+    if material.texture < 0:
+        return 1.0
+    s, t = texture_point(scene, triangle, u, v)
+    return alpha(texture_at(scene.textures, material.texture), scene.texels, s, t)
 
 
 @inner

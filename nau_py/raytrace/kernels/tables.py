@@ -102,8 +102,13 @@ ARRAYS: dict[str, str | np.dtype[np.void]] = {
 """The arrays of a scene. Triangles, vertices (3 a row), attributes (4 a row) and materials as in
 RayGeometry; ``smooth``: triangles whose normals differ; ``emitter_pdf``: density over area by
 triangle; ``closest`` and ``any_hit``: codes of programs by ray type and material; the rest by ray
-type: ``miss`` codes; ``has_any_hit`` 0, 1 or 2 (a Python one); ``visibility`` where there is no
-closest-hit program; ``deferred_shadows`` where Python must answer what is in the way."""
+type: ``miss`` codes; ``has_any_hit``: NOTHING, DECIDED, PARTIAL or PYTHON; ``visibility`` where
+there is no closest-hit program; ``deferred_shadows`` where Python must answer what is in the
+way."""
+
+NOTHING, DECIDED, PARTIAL, PYTHON = range(4)
+"""What any-hit programs a ray type has: none; only such as stop a ray or let it pass, which Embree
+asks while it traces; some that let a part of the light pass; some of Python's."""
 
 SCENE = np.dtype(
     [
@@ -171,21 +176,84 @@ media_of, set_media = getter(PATH, "media"), setter(PATH, "media")
 TILE = np.dtype(
     [
         ("ray", "u8"),
+        ("packet", "u8"),
+        ("valid", "u8"),
+        ("query", "u8"),
+        ("lanes", "u8"),
+        ("seen", "u8"),
         ("counts", "u8"),
         ("radiance", "u8"),
+        ("work", "u8"),
         ("stack", "u8"),
+        ("shadows", "u8"),
         ("deferred", "u8"),
         ("capacity", "i8"),
         ("next", "i8"),
         ("waiting", "i8"),
         ("top", "i8"),
+        ("pending", "i8"),
+        ("shift", "i8"),
     ],
     align=True,
 )
-"""What one thread works with: addresses of Embree's ray, the counters, the results (4 float32 a
-row), the paths that wait their turn (``top`` of them) and those that Python must answer
-(``waiting`` of ``capacity``, and one slot for what is too much); ``next``: the path of the
-queue to follow."""
+"""What one thread works with: addresses of Embree's single ray, of its packet, of the packet's
+int32 mask of valid lanes and of the QUERY; of the paths in the lanes (int64) and what they see
+(float32); of the counters, the results (4 float32 a row), the LANES paths of a bundle, those that
+wait their turn (``top`` of them), shadow rays (``pending`` of them), and paths that Python must
+answer (``waiting`` of ``capacity``, and one slot for what is too much); ``next``: the path of the
+queue to follow. Samples of the same pixel >> ``shift`` are traced together."""
+
+LANES = 16
+"""Rays of a packet, paths of a bundle."""
+
+SHADOW_RAY = np.dtype(
+    [
+        ("origin", "f4", 3),
+        ("direction", "f4", 3),
+        ("light", "f4", 3),
+        ("tmax", "f4"),
+        ("index", "i4"),
+        ("pixel", "u4"),
+        ("sample", "u4"),
+        ("depth", "i4"),
+        ("source", "i4"),
+    ],
+    align=True,
+)
+"""A ray to a light: ``light`` is added to result ``index`` as far as the ray gets through;
+``source``: the light's number, that of the emissive triangles comes after the last light's."""
+shadow_at = record_at(SHADOW_RAY)
+ray_origin_of, set_ray_origin = getter(SHADOW_RAY, "origin"), setter(SHADOW_RAY, "origin")
+ray_heading_of, set_ray_heading = getter(SHADOW_RAY, "direction"), setter(SHADOW_RAY, "direction")
+light_of, set_light = getter(SHADOW_RAY, "light"), setter(SHADOW_RAY, "light")
+SHADOWS = 512
+"""Shadow rays that are collected before they are traced."""
+
+QUERY = np.dtype(
+    [
+        ("flags", "i4"),
+        ("features", "i4"),
+        ("context", "u8"),
+        ("filter", "u8"),
+        ("callback", "u8"),
+        ("width", "f8"),
+        ("instance", "i4"),
+        ("instance_primitive", "i4"),
+        ("scene", "u8"),
+        ("counts", "u8"),
+        ("ray_type", "i8"),
+        ("first", "i8"),
+        ("pixel", "u4", LANES),
+        ("sample", "u4", LANES),
+        ("depth", "i4", LANES),
+        ("ignored", "f4", LANES),
+    ],
+    align=True,
+)
+"""RTCIntersectArguments (and RTCOccludedArguments) of rtcore_common.h, then, from ``instance`` on,
+an RTCRayQueryContext with what any-hit programs need: addresses of the SCENE and the counters, the
+ray type, the scene's ``first`` triangle in Embree's scene, whose rays are in the lanes, and how far
+the last hit was that each ignored."""
 
 TRACE, SHADE, HIT, CANDIDATE, MISSED, OCCLUSION = range(6)
 """Status: to be traced; accepted hit to be shaded; and what a Python program must answer: a closest
@@ -206,5 +274,5 @@ NONFINITE, CUT, COUNTERS = 8, 9, 10
 
 USER = 127
 """The code of a program that is no kernel: Python answers for it."""
-STACK = 16
-"""Paths that wait while another part of the same sample is followed."""
+STACK = 256
+"""Paths that wait while other parts of the same samples are followed."""

@@ -6,7 +6,7 @@ from math import floor, isfinite
 from typing import Any
 
 from nau_py.raytrace.kernels.jit import inner
-from nau_py.raytrace.kernels.memory import i32
+from nau_py.raytrace.kernels.memory import i8, i32
 from nau_py.raytrace.kernels.tables import border_of
 
 RGBA = tuple[float, float, float, float]
@@ -36,7 +36,12 @@ def fetch(texture: Any, texels: int, x: float, y: float) -> RGBA:
     if column < 0 or row < 0:
         b = border_of(texture)
         return b[0] * 255.0, b[1] * 255.0, b[2] * 255.0, b[3] * 255.0
-    word = i32(texels, (texture.offset >> 2) + row * texture.width + column)
+    return bytes_of(i32(texels, (texture.offset >> 2) + row * texture.width + column))
+
+
+@inner
+def bytes_of(word: int) -> RGBA:
+    """The four bytes of a texel."""
     return (
         float(word & 255),
         float((word >> 8) & 255),
@@ -46,21 +51,43 @@ def fetch(texture: Any, texels: int, x: float, y: float) -> RGBA:
 
 
 @inner
+def placed(texture: Any, s: float, t: float) -> tuple[float, float]:
+    """Texture coordinates in texels. Those that repeat are brought into the image first."""
+    if not (isfinite(s) and isfinite(t)):
+        return 0.0, 0.0
+    if texture.wrap_s == REPEAT:
+        s -= floor(s)
+    if texture.wrap_t == REPEAT:
+        t -= floor(t)
+    return s * texture.width, t * texture.height
+
+
+@inner
+def inside(texture: Any, x0: float, y0: float) -> bool:
+    """Whether the four texels from (x0, y0) on lie in the image."""
+    return bool(x0 >= 0.0 and y0 >= 0.0 and x0 + 1 < texture.width and y0 + 1 < texture.height)
+
+
+@inner
 def lookup(texture: Any, texels: int, s: float, t: float) -> RGBA:
     """RGBA at texture coordinates; the linear filter of the OpenGL 4.5 specification, 8.14.2."""
-    if not (isfinite(s) and isfinite(t)):
-        s, t = 0.0, 0.0
-    x, y = s * texture.width, t * texture.height
+    x, y = placed(texture, s, t)
     if texture.nearest:
         a = fetch(texture, texels, floor(x), floor(y))
         return a[0] / 255.0, a[1] / 255.0, a[2] / 255.0, a[3] / 255.0
     x, y = x - 0.5, y - 0.5
     x0, y0 = floor(x), floor(y)
     fx, fy = x - x0, y - y0
-    a = fetch(texture, texels, x0, y0)
-    b = fetch(texture, texels, x0 + 1, y0)
-    c = fetch(texture, texels, x0, y0 + 1)
-    d = fetch(texture, texels, x0 + 1, y0 + 1)
+    if inside(texture, x0, y0):
+        at = (texture.offset >> 2) + int(y0) * texture.width + int(x0)
+        a, b = bytes_of(i32(texels, at)), bytes_of(i32(texels, at + 1))
+        at += texture.width
+        c, d = bytes_of(i32(texels, at)), bytes_of(i32(texels, at + 1))
+    else:
+        a = fetch(texture, texels, x0, y0)
+        b = fetch(texture, texels, x0 + 1, y0)
+        c = fetch(texture, texels, x0, y0 + 1)
+        d = fetch(texture, texels, x0 + 1, y0 + 1)
     high, low = fy / 255.0, (1 - fy) / 255.0
     wa, wb, wc, wd = (1 - fx) * low, fx * low, (1 - fx) * high, fx * high
     return (
@@ -69,3 +96,19 @@ def lookup(texture: Any, texels: int, s: float, t: float) -> RGBA:
         a[2] * wa + b[2] * wb + c[2] * wc + d[2] * wd,
         a[3] * wa + b[3] * wb + c[3] * wc + d[3] * wd,
     )
+
+
+@inner
+def alpha(texture: Any, texels: int, s: float, t: float) -> float:
+    """The last component of ``lookup``, for less."""
+    x, y = placed(texture, s, t)
+    x0, y0 = floor(x - 0.5), floor(y - 0.5)
+    if texture.nearest or not inside(texture, x0, y0):
+        return lookup(texture, texels, s, t)[3]
+    fx, fy = x - 0.5 - x0, y - 0.5 - y0
+    at = texture.offset + 4 * (int(y0) * texture.width + int(x0)) + 3
+    below = 4 * texture.width
+    a, b = i8(texels, at) & 255, i8(texels, at + 4) & 255
+    c, d = i8(texels, at + below) & 255, i8(texels, at + below + 4) & 255
+    high, low = fy / 255.0, (1 - fy) / 255.0
+    return a * ((1 - fx) * low) + b * (fx * low) + c * ((1 - fx) * high) + d * (fx * high)

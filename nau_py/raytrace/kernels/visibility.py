@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 
 from nau_py.raytrace.kernels.codes import ALPHA_TEST, NONE, ONE_SIDED, STOCHASTIC_ALPHA
-from nau_py.raytrace.kernels.embree import blocked, hit, nearest
+from nau_py.raytrace.kernels.embree import ask, blocked, hit, nearest, whose
 from nau_py.raytrace.kernels.jit import V3, inner
 from nau_py.raytrace.kernels.memory import i8, i32, i64, put_i64
 from nau_py.raytrace.kernels.sampling import uniform
-from nau_py.raytrace.kernels.surface import spawn, surface_point, texel
+from nau_py.raytrace.kernels.surface import spawn, surface_point, texel_alpha
 from nau_py.raytrace.kernels.tables import (
     CONTINUATION,
     CUT,
+    DECIDED,
     NONFINITE,
     USER,
     diffuse_of,
@@ -25,7 +26,7 @@ from nau_py.raytrace.kernels.vec import dot
 
 ALPHA_THRESHOLD = 0.25
 MAX_LAYERS = 256
-"""Ignored hits that one ray may pass through; reaching it is reported, never silent."""
+"""Hits that one ray may pass through after Embree found them; reaching it is reported."""
 FAINT = 1e-6
 """Transmittance that counts as none."""
 
@@ -64,7 +65,7 @@ def opacity(
     if code == ONE_SIDED:
         return 1.0 if dot(surface_point(scene, triangle, u, v)[1], direction) < 0.0 else 0.0
     material = material_at(scene.materials, owner)
-    alpha = texel(scene, material, triangle, u, v)[3]
+    alpha = texel_alpha(scene, material, triangle, u, v)
     if code == ALPHA_TEST:
         return 1.0 if alpha > ALPHA_THRESHOLD else 0.0
     alpha = min(max(alpha * diffuse_of(material)[3], 0.0), 1.0)
@@ -75,11 +76,19 @@ def opacity(
 
 
 @inner
+def sound(tile: Any, origin: V3, direction: V3) -> bool:
+    """Whether a ray may be sent to Embree; one that is not finite, or goes nowhere, is counted."""
+    if finite(origin) and finite(direction) and dot(direction, direction) > 0.0:
+        return True
+    count(tile, NONFINITE)
+    return False
+
+
+@inner
 def visibility(
     scene: Any,
     tile: Any,
     ray_type: int,
-    kind: int,
     origin: V3,
     direction: V3,
     tmax: float,
@@ -87,18 +96,16 @@ def visibility(
     sample: np.uint32,
     depth: int,
 ) -> float:
-    """The part of the light along a ray that arrives, 0 to 1. ``tmax`` in lengths of
-    ``direction``. A ray that meets more ignored hits than the limit is blocked, and counted."""
-    if not (finite(origin) and finite(direction)) or dot(direction, direction) == 0.0:
-        count(tile, NONFINITE)
-        return 0.0
-    count(tile, kind)
-    ray = tile.ray
-    if i8(scene.has_any_hit, ray_type) == 0:
-        return 0.0 if blocked(scene, ray, origin, direction, tmax) else 1.0
+    """The part of the light along a sound ray that arrives, 0 to 1. ``tmax`` in lengths of
+    ``direction``. A ray that passes more half-transparent hits than the limit is blocked, and
+    counted."""
+    ray, query = tile.ray, ask(scene, tile, ray_type, 0)
+    whose(tile, 0, pixel, sample, depth)
+    if i8(scene.has_any_hit, ray_type) <= DECIDED:
+        return 0.0 if blocked(scene, ray, query, origin, direction, tmax) else 1.0
     through = 1.0
     for _ in range(MAX_LAYERS):
-        triangle = nearest(scene, ray, origin, direction, tmax)
+        triangle = nearest(scene, ray, query, origin, direction, tmax)
         if triangle < 0:
             return through
         t, u, v = hit(ray)
