@@ -1,0 +1,179 @@
+"""The conformance command: all of Nau's own projects, and how near their pictures come.
+
+``python -m tests.corpus --nau CHECKOUT [--oracle DIR] [--out report.html] [--markdown FILE]
+[--only TEXT] [--jobs N] [--timeout S]``
+
+Each pipeline is rendered in a process of its own. The report has a row a pipeline with the real
+picture, ours and the difference beside each other; the Markdown is the table of docs/conformance.md.
+"""
+
+from __future__ import annotations
+
+import argparse
+import base64
+import csv
+import html
+import io
+import json
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from tests.corpus.conformance import Difference, Request, Result
+
+SUBSTITUTED = "__substituted_model"
+
+
+def requests(nau: Path, oracle: Path | None, only: str, folder: Path) -> list[Request]:
+    """A request for each picture of the real engine, and one for each other project."""
+    made: list[Request] = []
+    seen: set[str] = set()
+    index = oracle / "index.csv" if oracle else None
+    rows = list(csv.DictReader(index.read_text().splitlines())) if index else []
+    for row in rows:
+        if only in row["path"]:
+            seen.add(row["path"])
+            reference = str(oracle / row["folder"]) if oracle else None
+            size = (int(row["width"]), int(row["height"]))
+            picture = str(folder / f"{len(made)}.png")
+            made.append(
+                Request(_edited(nau, row, folder), row["pipeline"], size, reference, picture)
+            )
+    for path in sorted((nau / "projects").glob("**/*.xml")):
+        name = str(path.relative_to(nau))
+        if name not in seen and only in name:
+            made.append(Request(str(path), None, None, None, str(folder / f"{len(made)}.png")))
+    return made
+
+
+def _edited(nau: Path, row: dict[str, str], folder: Path) -> str:
+    """The project's file; where the reference has another model, a copy beside it with that."""
+    path = nau / row["path"]
+    if SUBSTITUTED not in row["folder"]:
+        return str(path)
+    text = path.read_text(encoding="utf-8", errors="replace")
+    text = text.replace('<scene name="MainScene" param="SWAP_YZ">', '<scene name="MainScene">')
+    text = text.replace("../../models/SanMiguel/san-miguel.nbo", "../../models/ntg-bench/bench.obj")
+    copy = path.with_name(f"{path.stem}{SUBSTITUTED}.xml.tmp")
+    copy = copy.with_suffix("")
+    copy.write_text(text)
+    return str(copy)
+
+
+def work(request: Request, timeout: float) -> Result:
+    """Run a request in a child process."""
+    with tempfile.NamedTemporaryFile("w", suffix=".json", delete=False) as file:
+        json.dump(request.__dict__, file)
+    command = [sys.executable, "-m", "tests.corpus.conformance", file.name]
+    result = Result(request.project, request.pipeline)
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=timeout, check=False)
+        lines = done.stdout.strip().splitlines()
+        if done.returncode or not lines:
+            result.stage = "crash"
+            result.message = (done.stderr.strip().splitlines() or ["no output"])[-1]
+            return result
+        found = json.loads(lines[-1])
+        found["differences"] = [Difference(**d) for d in found["differences"]]
+        return Result(**found)
+    except subprocess.TimeoutExpired:
+        result.stage, result.message = "time", f"no frame {2} within {timeout:.0f} s"
+        return result
+    finally:
+        Path(file.name).unlink()
+
+
+def _embedded(image: Image.Image) -> str:
+    image.thumbnail((320, 240))
+    buffer = io.BytesIO()
+    image.convert("RGB").save(buffer, "PNG")
+    return f'<img src="data:image/png;base64,{base64.b64encode(buffer.getvalue()).decode()}">'
+
+
+def _pictures(request: Request) -> str:
+    ours = Path(request.picture)
+    if not ours.exists():
+        return ""
+    shown = [_embedded(Image.open(ours))]
+    if request.reference:
+        real = Image.open(Path(request.reference) / "final.png").convert("RGB")
+        shown.insert(0, _embedded(real.copy()))
+        a, b = (np.asarray(i.convert("RGB")).astype(int) for i in (real, Image.open(ours)))
+        if a.shape == b.shape:
+            shown.append(
+                _embedded(Image.fromarray(np.clip(np.abs(a - b) * 8, 0, 255).astype("u1")))
+            )
+    return "".join(shown)
+
+
+def _cells(nau: Path, request: Request, result: Result) -> list[str]:
+    try:
+        name = str(Path(request.project).relative_to(nau / "projects"))
+    except ValueError:
+        name = request.project
+    worst = max(result.differences, key=lambda d: (not d.good, d.mean), default=None)
+    picture = result.differences[0] if result.differences else None
+    return [
+        name,
+        request.pipeline or "(default)",
+        result.verdict,
+        f"{result.frame_ms:.0f}" if result.frame_ms else "",
+        f"{picture.mean:.2f} / {picture.high:.0f}" if picture else "",
+        f"{worst.name}: {worst.mean:.2f} / {worst.high:.0f}"
+        if worst and worst is not picture
+        else "",
+        result.message or "; ".join(result.missing_targets),
+    ]
+
+
+HEAD = ["project", "pipeline", "verdict", "ms a frame", "picture", "worst target", "what is said"]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m tests.corpus")
+    parser.add_argument("--nau", type=Path, required=True)
+    parser.add_argument("--oracle", type=Path)
+    parser.add_argument("--out", type=Path)
+    parser.add_argument("--markdown", type=Path)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--timeout", type=float, default=120)
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        asked = requests(options.nau, options.oracle, options.only, Path(folder))
+        with ThreadPoolExecutor(options.jobs) as pool:
+            results = []
+            for request, result in zip(asked, pool.map(lambda r: work(r, options.timeout), asked)):
+                results.append(result)
+                print(" | ".join(_cells(options.nau, request, result))[:230], flush=True)
+        summary = Counter(r.verdict for r in results)
+        said = ", ".join(f"{n} {verdict}" for verdict, n in summary.most_common())
+        print(f"{len(results)} pipelines: {said}")
+        rows = [_cells(options.nau, q, r) for q, r in zip(asked, results)]
+        if options.markdown:
+            table = ["| " + " | ".join(HEAD) + " |", "|" + "---|" * len(HEAD)]
+            table += ["| " + " | ".join(c.replace("|", "\\|") for c in row) + " |" for row in rows]
+            options.markdown.write_text(f"{said}\n\n" + "\n".join(table) + "\n")
+        if options.out:
+            body = "".join(
+                "<tr>"
+                + "".join(f"<td>{html.escape(c)}</td>" for c in row)
+                + f"<td>{_pictures(q)}</td></tr>"
+                for row, q in zip(rows, asked)
+            )
+            head = "".join(f"<th>{h}</th>" for h in [*HEAD, "real, ours, difference x 8"])
+            options.out.write_text(
+                "<!doctype html><meta charset=utf-8><title>Conformance</title><style>body{font:13px "
+                "sans-serif}td{border-top:1px solid #ccc;vertical-align:top;padding:4px}</style>"
+                f"<h1>Nau's own projects</h1><p>{html.escape(said)}</p><table><tr>{head}</tr>{body}</table>"
+            )
+
+
+if __name__ == "__main__":
+    main()
