@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from nau_py.model.node import Attr, Configured, Inline, Items, Node, Setting, Settings
+from nau_py.model.node import Attr, Configured, Inline, Items, Node, Setting, Settings, Variants
 
 SCENE_TYPES = (
     "OctreeUnified",
@@ -59,12 +59,38 @@ class Terrain(Configured):
     )
 
 
+VERTEX_ATTRIBUTES = (
+    "position",
+    "normal",
+    "color",
+    *(f"texCoord{k}" for k in range(4)),
+    "tangent",
+    "bitangent",
+    "triangleID",
+    *(f"custom{k}" for k in range(6)),
+)
+"""Names of vertex attributes (nau-format.md, 8.4)."""
+
+
+class BufferAttribute(Node):
+    """The buffer of a vertex attribute, or of the indices: four floats, or one unsigned, each."""
+
+    name: Annotated[
+        str | None, Attr(doc="Buffer.", required=True, ref="buffer", library="fromLibrary")
+    ] = None
+    fromLibrary: Annotated[str | None, Attr(doc="Library of the buffer.")] = None
+
+
 class BufferGeometry(Node):
     """Geometry that lives in GPU buffers; children are named like vertex attributes."""
 
     name: Annotated[str | None, Attr(doc="Object name.", required=True)] = None
     primitive: Annotated[str | None, Attr(doc="Topology.", required=True, values=TOPOLOGIES)] = None
     material: Annotated[str | None, Attr(doc="Material of the default library.")] = None
+    attributes: Annotated[
+        list[BufferAttribute],
+        Variants(dict.fromkeys((*VERTEX_ATTRIBUTES, "index"), BufferAttribute)),
+    ] = Field(default_factory=list)
 
 
 class ModelFile(Node):

@@ -15,7 +15,16 @@ from nau_py.raster.state import apply_state
 from nau_py.scene.material import RenderMaterial
 from nau_py.scene.mesh import F64, Mesh, SceneObject
 
-_MODES = {"TRIANGLES": GL.GL_TRIANGLES, "LINES": GL.GL_LINES, "POINTS": GL.GL_POINTS}
+_MODES = {
+    "TRIANGLES": GL.GL_TRIANGLES,
+    "TRIANGLE_STRIP": GL.GL_TRIANGLE_STRIP,
+    "TRIANGLE_FAN": GL.GL_TRIANGLE_FAN,
+    "LINES": GL.GL_LINES,
+    "LINE_LOOP": GL.GL_LINE_LOOP,
+    "POINTS": GL.GL_POINTS,
+    "TRIANGLES_ADJACENCY": GL.GL_TRIANGLES_ADJACENCY,
+    "PATCHES": GL.GL_PATCHES,
+}
 _ACCESS = {
     "READ_ONLY": GL.GL_READ_ONLY,
     "WRITE_ONLY": GL.GL_WRITE_ONLY,
@@ -47,7 +56,8 @@ def draw_list(
     for item in objects:
         for index, group in enumerate(item.mesh.groups):
             material = material_of(group.material)
-            if material is not None and material.enabled and len(group.indices):
+            drawn = len(group.indices) or item.mesh.buffers
+            if material is not None and material.enabled and drawn:
                 seen.setdefault(id(material), len(seen))
                 items.append(DrawItem(item.mesh, index, material, item.matrix))
     return sorted(items, key=lambda d: (d.material.order, seen[id(d.material)]))
@@ -106,6 +116,31 @@ def set_uniforms(program: Program, context: DrawContext) -> None:
     context.resources.blocks.bind()
 
 
+def _draw_mesh(item: DrawItem, program: Program, resources: Resources, instances: int) -> None:
+    array = resources.geometry.vertex_array(item.mesh, program)
+    gpu = resources.geometry.upload(item.mesh)
+    mode = _MODES[item.mesh.primitive]
+    if program.is_tessellated:
+        points = item.mesh.groups[item.group].indices.shape[1]
+        mode = GL.GL_PATCHES
+        GL.glPatchParameteri(GL.GL_PATCH_VERTICES, points)
+    gl.draw_elements(
+        program.mgl.glo, array, mode, gpu.count[item.group], gpu.first[item.group], instances
+    )
+
+
+def _draw_buffers(mesh: Mesh, program: Program, resources: Resources, instances: int) -> None:
+    """Geometry of GPU buffers: as many vertices as ``position`` holds, or as there are indices."""
+    found = {name: resources.buffer(place) for name, place in mesh.buffers.items()}
+    buffers = {name: buffer for name, buffer in found.items() if buffer is not None}
+    array = resources.geometry.buffer_array(mesh, program, {n: b.glo for n, b in buffers.items()})
+    mode = _MODES[mesh.primitive]
+    if "index" in buffers:
+        gl.draw_elements(program.mgl.glo, array, mode, buffers["index"].size // 4, 0, instances)
+    elif "position" in buffers:
+        gl.draw_arrays(program.mgl.glo, array, mode, buffers["position"].size // 16, instances)
+
+
 def draw(items: list[DrawItem], context: DrawContext) -> None:
     """Draw ``items`` into the bound target."""
     resources = context.resources
@@ -124,16 +159,11 @@ def draw(items: list[DrawItem], context: DrawContext) -> None:
         discard = not program.has_fragment
         if discard:
             GL.glEnable(GL.GL_RASTERIZER_DISCARD)
-        array = resources.geometry.vertex_array(item.mesh, program)
-        gpu = resources.geometry.upload(item.mesh)
-        gl.draw_elements(
-            program.mgl.glo,
-            array,
-            _MODES[item.mesh.primitive],
-            gpu.count[item.group],
-            gpu.first[item.group],
-            max(context.instances, 1),
-        )
+        instances = max(context.instances, 1)
+        if item.mesh.buffers:
+            _draw_buffers(item.mesh, program, resources, instances)
+        else:
+            _draw_mesh(item, program, resources, instances)
         if discard:
             GL.glDisable(GL.GL_RASTERIZER_DISCARD)
     if previous is not None:

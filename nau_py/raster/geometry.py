@@ -20,6 +20,7 @@ class GpuMesh:
     indices: Any
     first: list[int]
     count: list[int]
+    version: int = 0
 
 
 class Geometry:
@@ -31,9 +32,12 @@ class Geometry:
         self._arrays: dict[tuple[int, int], int] = {}
 
     def upload(self, mesh: Mesh) -> GpuMesh:
-        """The GPU copy of ``mesh``; a mesh is never changed after it was loaded."""
+        """The GPU copy of ``mesh``; of a loaded mesh only positions change, with its version."""
         found = self._meshes.get(id(mesh))
         if found is not None:
+            if found[1].version != mesh.version:
+                found[1].buffers["position"].write(mesh.positions.tobytes())
+                found[1].version = mesh.version
             return found[1]
         buffers = {
             name: self._ctx.buffer(np.ascontiguousarray(values).tobytes())
@@ -42,7 +46,8 @@ class Geometry:
         counts = [group.indices.size for group in mesh.groups]
         first = [0, *np.cumsum(counts)[:-1].tolist()]
         flat = np.concatenate([group.indices.reshape(-1) for group in mesh.groups])
-        gpu = GpuMesh(buffers, self._ctx.buffer(flat.astype(np.uint32).tobytes()), first, counts)
+        indices = self._ctx.buffer(flat.astype(np.uint32).tobytes())
+        gpu = GpuMesh(buffers, indices, first, counts, mesh.version)
         self._meshes[id(mesh)] = (mesh, gpu)
         return gpu
 
@@ -51,6 +56,15 @@ class Geometry:
         gl.delete_vertex_arrays(list(self._arrays.values()))
         self._arrays.clear()
         self._meshes.clear()
+
+    def buffer_array(self, mesh: Mesh, program: Program, buffers: dict[str, int]) -> int:
+        """``vertex_array`` for a mesh whose attributes live in the named GL ``buffers``."""
+        key = (id(mesh), program.mgl.glo)
+        if key not in self._arrays:
+            inputs = [(at, buffers[name]) for name, at in program.inputs if name in buffers]
+            self._meshes.setdefault(id(mesh), (mesh, GpuMesh({}, None, [], [])))
+            self._arrays[key] = gl.create_vertex_array(inputs, buffers.get("index", 0))
+        return self._arrays[key]
 
     def vertex_array(self, mesh: Mesh, program: Program) -> int:
         """The vertex array that feeds ``mesh`` to ``program``, inputs matched by name."""

@@ -110,6 +110,12 @@ def create_sampler() -> int:
     return int(name[0])
 
 
+def swizzle_grey(texture: int) -> None:
+    """Let a depth texture be read as grey, as compatibility contexts do, which Nau uses."""
+    grey = np.array([GL.GL_RED, GL.GL_RED, GL.GL_RED, GL.GL_ONE], np.int32)
+    GL.glTextureParameteriv(texture, GL.GL_TEXTURE_SWIZZLE_RGBA, grey)
+
+
 def delete_textures(names: list[int]) -> None:
     GL.glDeleteTextures(len(names), np.array(names, np.uint32))
 
@@ -224,7 +230,8 @@ def create_vertex_array(inputs: list[tuple[int, int]], indices: int) -> int:
         GL.glEnableVertexArrayAttrib(array, location)
         GL.glVertexArrayAttribFormat(array, location, 4, GL.GL_FLOAT, GL.GL_FALSE, 0)
         GL.glVertexArrayAttribBinding(array, location, slot)
-    GL.glVertexArrayElementBuffer(array, indices)
+    if indices:
+        GL.glVertexArrayElementBuffer(array, indices)
     return array
 
 
@@ -236,6 +243,13 @@ def draw_elements(
     GL.glBindVertexArray(array)
     offset = ctypes.c_void_p(first * 4)
     GL.glDrawElementsInstanced(mode, count, GL.GL_UNSIGNED_INT, offset, instances)
+
+
+def draw_arrays(program: int, array: int, mode: int, count: int, instances: int) -> None:
+    """Draw ``count`` vertices in their order, ``instances`` times."""
+    GL.glUseProgram(program)
+    GL.glBindVertexArray(array)
+    GL.glDrawArraysInstanced(mode, 0, count, instances)
 
 
 def barrier() -> None:

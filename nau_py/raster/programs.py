@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ from nau_py.model.location import Location
 from nau_py.model.shader import STAGES, Shader
 from nau_py.paths import resolve
 from nau_py.raster import gl
+from nau_py.raster.tolerant_glsl import adapt, renamed
 
 _STAGE_NAMES = {
     "vs": "vertex_shader",
@@ -64,6 +65,9 @@ class Program:
     inputs: list[tuple[str, int]]
     has_fragment: bool
     is_compute: bool
+    is_tessellated: bool = False
+    notes: list[str] = field(default_factory=list)
+    """What had to be changed for the driver to accept it."""
 
     def set(self, name: str, value: np.ndarray[Any, Any]) -> None:
         """Upload a flat value, cut or zero-filled to the size that the shader declares."""
@@ -130,26 +134,47 @@ def compile_program(ctx: Any, library: str, shader: Shader) -> Program:
     """Compile and link. Raises :class:`~nau_py.errors.ShaderError`."""
     label = f"shader '{shader.name}' of library '{library}'"
     sources = {s: src for s in STAGES if (src := read_stage(shader, s)) is not None}
-    unsupported = [s for s in ("ts", "ms", "tc", "te") if s in sources]
+    unsupported = [s for s in ("ts", "ms") if s in sources]
     if unsupported:
-        message = f"{label}: stage {unsupported[0]} is not supported by this version"
+        message = (
+            f"{label}: stage {unsupported[0]} needs the extension GL_NV_mesh_shader, which nau_py "
+            "does not use"
+        )
         raise ShaderError(error("G004", shader.where(unsupported[0]), message))
+    texts = {stage: source.text for stage, source in sources.items()}
+    notes: list[str] = []
     try:
-        if "cs" in sources:
-            made = ctx.compute_shader(sources["cs"].text)
-        else:
-            texts = {_STAGE_NAMES[s]: source.text for s, source in sources.items()}
-            made = ctx.program(**texts)
+        made = _link(ctx, texts)
     except moderngl.Error as problem:
-        raise ShaderError(_located(str(problem), sources, shader, label)) from None
+        adapted, notes = adapt(texts)
+        try:
+            if not notes:
+                raise problem
+            made = _link(ctx, adapted)
+        except moderngl.Error:
+            raise ShaderError(_located(str(problem), sources, shader, label)) from None
     except KeyError as problem:
         message = f"{label}: #include {problem} is not supported"
         raise ShaderError(error("G001", shader.location, message)) from None
     uniforms = {
-        name: UniformSlot(location, gl_type, length)
+        name.removeprefix(renamed("")): UniformSlot(location, gl_type, length)
         for name, location, gl_type, length in gl.active_uniforms(made.glo)
     }
     inputs = [] if "cs" in sources else gl.active_inputs(made.glo)
     return Program(
-        library, shader.name or "", made, uniforms, inputs, "ps" in sources, "cs" in sources
+        library,
+        shader.name or "",
+        made,
+        uniforms,
+        inputs,
+        "ps" in sources,
+        "cs" in sources,
+        "te" in sources,
+        notes,
     )
+
+
+def _link(ctx: Any, texts: dict[str, str]) -> Any:
+    if "cs" in texts:
+        return ctx.compute_shader(texts["cs"])
+    return ctx.program(**{_STAGE_NAMES[stage]: text for stage, text in texts.items()})

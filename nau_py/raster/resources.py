@@ -213,6 +213,9 @@ class Resources:
                     made = compile_program(self.device.ctx, library, found[1])
                     self.blocks.attach(made.mgl.glo)
                     self._programs[key] = made
+                    if made.notes:
+                        message = f"shader '{name}' of library '{library}': {'; '.join(made.notes)}"
+                        self.diagnostics.append(warning("G005", found[1].location, message))
                 except ShaderError as problem:
                     self.diagnostics += problem.diagnostics
         return self._programs[key]

@@ -109,4 +109,7 @@ def window_target(width: int, height: int) -> Target:
         Attachment("window_depth", "DEPTH24_STENCIL8"),
     )
     target.allocate()
+    # clears keep to a pass's first viewport: elsewhere a window begins as a driver makes it
+    target.bind(Rect(0.0, 0.0, float(width), float(height)))
+    target.clear_depth(1.0)
     return target

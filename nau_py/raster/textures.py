@@ -89,7 +89,9 @@ def make_2d(
             gl.create_texture(GL.GL_TEXTURE_2D), GL.GL_TEXTURE_2D, fmt, width, height, levels
         )
         GL.glTextureStorage2D(texture.glo, levels, fmt.internal, width, height)
-    if not fmt.depth:
+    if fmt.depth:
+        gl.swizzle_grey(texture.glo)
+    else:
         texture.clear()
     return texture
 

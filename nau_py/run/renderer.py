@@ -180,6 +180,7 @@ class Renderer:
         width, height = self._size
         camera = session.world.camera(None)
         timer = index * self.time_step * 1000.0
+        session.world.events.frame(index * self.time_step)
         context = FrameContext(
             session, index, timer, camera, Rect(0.0, 0.0, float(width), float(height))
         )

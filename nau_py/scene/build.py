@@ -8,16 +8,22 @@ import numpy as np
 
 from nau_py.diagnostic import Diagnostic, warning
 from nau_py.diagnostic import error as error_at
+from nau_py.model.library import qualified
 from nau_py.model.linked import Project
 from nau_py.model.location import Location
-from nau_py.model.scene import Geometry, Scene
+from nau_py.model.scene import BufferGeometry, Geometry, Scene, Terrain
 from nau_py.paths import resolve
 from nau_py.scene import primitives
 from nau_py.scene.assimp import load_assimp
 from nau_py.scene.mesh import Group, Mesh, SceneObject, merge, pad4, transform_mesh
 from nau_py.scene.model_error import ModelError
 from nau_py.scene.model_material import PRIMITIVE_MATERIAL, ModelMaterial
+from nau_py.scene.nbo import load_nbo
 from nau_py.scene.obj import load_obj
+from nau_py.scene.ogre import load_ogre
+from nau_py.scene.patch import load_patch
+from nau_py.scene.poses import PoseTrack
+from nau_py.scene.terrain import load_terrain
 from nau_py.scene.transforms import transform_of
 
 ASSIMP_SUFFIXES = [
@@ -33,7 +39,7 @@ ASSIMP_SUFFIXES = [
     ".gltf",
     ".glb",
 ]
-SUFFIXES = (".obj", *ASSIMP_SUFFIXES)
+SUFFIXES = (".obj", ".nbo", ".cbo", ".xml", ".patch", *ASSIMP_SUFFIXES)
 """Model files that this version reads."""
 _MERGED_TYPES = ("OctreeUnified",)
 
@@ -46,6 +52,8 @@ class SceneBuilder:
         self.materials: list[ModelMaterial] = []
         self.new_materials: list[str] = []
         self.diagnostics: list[Diagnostic] = []
+        self.poses: dict[int, tuple[PoseTrack, float]] = {}
+        """Pose tracks of meshes by ``id``, and how long they take."""
         self._primitives: dict[str, Mesh] = {}
 
     def build(self, scene: Scene) -> list[SceneObject]:
@@ -54,7 +62,7 @@ class SceneBuilder:
         if not objects:
             return []
         merged = (scene.type or "OctreeUnified") in _MERGED_TYPES
-        if merged:
+        if merged and not any(o.mesh.buffers for o in objects):
             baked = [transform_mesh(o.mesh, o.matrix) for o in objects]
             objects = [SceneObject("default", merge(baked))]
             if scene.has_flag("UNITIZE"):  # its box is the merged object's: no scene transform
@@ -71,20 +79,13 @@ class SceneBuilder:
         if scene.filename is not None:
             return self._file(scene.filename, scene.where("filename"), swap)
         objects = [o for g in scene.geometry for o in self._geometry(g)]
+        objects += [o for t in scene.terrain for o in self._terrain(t)]
+        objects += [self._buffers(b) for b in scene.buffers]
         for file in scene.files:
             if file.name is not None:
                 objects += self._file(file.name, file.where("name"), swap)
         for folder in scene.folders:
             objects += self._folder(folder.name or "", folder.where("name"), swap)
-        for node in (*scene.terrain, *scene.buffers):
-            self.diagnostics.append(
-                error_at(
-                    "M002",
-                    node.location,
-                    f"<{node.tag}> of scene '{scene.name}': this kind of geometry is not "
-                    "supported by this version",
-                )
-            )
         return objects
 
     def _geometry(self, node: Geometry) -> list[SceneObject]:
@@ -118,6 +119,31 @@ class SceneBuilder:
             return primitives.axis(node.material)
         return None
 
+    def _terrain(self, node: Terrain) -> list[SceneObject]:
+        where = node.where("heightMap")
+        found = resolve(Path(where.file).parent, node.heightMap or "")
+        if not found.exists:
+            return []
+        material = node.material or PRIMITIVE_MATERIAL
+        try:
+            mesh = load_terrain(found.best, material)
+        except ModelError as problem:
+            self.diagnostics.append(
+                error_at("M001", where, f"height map '{found.best.name}': {problem}")
+            )
+            return []
+        self.new_materials.append(material)
+        matrix = transform_of(self.project, node, "SCENE_OBJECT")
+        return [SceneObject(node.name or "", mesh, matrix)]
+
+    def _buffers(self, node: BufferGeometry) -> SceneObject:
+        material = node.material or "__nauDefault"
+        self.new_materials.append(material)
+        places = {a.tag: qualified(a.name or "", a.fromLibrary or "") for a in node.attributes}
+        group = Group(material, np.zeros((0, 1), np.uint32))
+        mesh = Mesh({}, [group], node.primitive or "TRIANGLES", places)
+        return SceneObject(node.name or "", mesh)
+
     def _folder(self, name: str, where: Location, swap: bool) -> list[SceneObject]:
         folder = resolve(Path(where.file).parent, name)
         objects: list[SceneObject] = []
@@ -139,6 +165,12 @@ class SceneBuilder:
                 objects = [SceneObject(str(path), mesh)]
             elif suffix in ASSIMP_SUFFIXES:
                 objects, materials = load_assimp(path, swap)
+            elif suffix in (".nbo", ".cbo"):
+                objects, materials = load_nbo(path)
+            elif suffix == ".patch":
+                objects, materials = [SceneObject(str(path), load_patch(path))], []
+            elif suffix == ".xml":
+                objects, materials = self._ogre(path), []
             else:
                 known = ", ".join(SUFFIXES)
                 raise ModelError(f"its format '{suffix}' is not supported (supported: {known})")
@@ -156,6 +188,13 @@ class SceneBuilder:
             item.mesh = self._valid(item.mesh, path, where)
         return objects
 
+    def _ogre(self, path: Path) -> list[SceneObject]:
+        objects, animation = load_ogre(path)
+        if animation is not None:
+            for index, track in animation.tracks.items():
+                self.poses[id(objects[index].mesh)] = (track, animation.length)
+        return objects
+
     def _existing_textures(self, material: ModelMaterial, path: Path, where: Location) -> None:
         """Forget textures whose file is missing, as Nau does, with a warning each."""
         for unit, texture in list(material.textures.items()):
@@ -169,6 +208,8 @@ class SceneBuilder:
 
     def _valid(self, mesh: Mesh, path: Path, where: Location) -> Mesh:
         """``mesh`` without faces that have a non-finite vertex; each mesh is reported once."""
+        if mesh.buffers:
+            return mesh
         bad = np.asarray(~np.isfinite(mesh.positions).all(axis=1))
         if not bad.any():
             return mesh

@@ -30,6 +30,11 @@ class Mesh:
     attributes: dict[str, F32]
     groups: list[Group]
     primitive: str = "TRIANGLES"
+    buffers: dict[str, str] = field(default_factory=dict)
+    """Attributes (and ``index``) that live in GPU buffers, by qualified name; such a mesh has no
+    vertices of its own."""
+    version: int = 0
+    """Grows when positions change: animated meshes only."""
 
     @property
     def positions(self) -> F32:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import cos, radians, sin, tan
 
 import numpy as np
@@ -41,10 +41,18 @@ def rotation(axis_angle: Sequence[float]) -> F64:
     return matrix
 
 
-def transform_of(project: Project, node: Configured, type_: str) -> F64:
-    """The matrix of SCALE, TRANSLATE and ROTATE in the written TRANSFORM_ORDER."""
+def transform_of(
+    project: Project,
+    node: Configured,
+    type_: str,
+    instead: Mapping[str, Sequence[float]] | None = None,
+) -> F64:
+    """The matrix of SCALE, TRANSLATE and ROTATE in the written TRANSFORM_ORDER. ``instead``:
+    values in the place of the file's."""
 
     def numbers(name: str) -> list[float]:
+        if instead and name in instead:
+            return list(instead[name])
         return [float(v) for v in project.value(node, type_, name)]
 
     parts = {

@@ -6,12 +6,15 @@ import numpy as np
 
 from nau_py.diagnostic import Diagnostic, listing
 from nau_py.model.linked import Project
+from nau_py.model.scene import Scene
 from nau_py.scene.build import SceneBuilder
 from nau_py.scene.camera import CameraState, camera_state
+from nau_py.scene.events import EventSystem
 from nau_py.scene.lights import LightState, light_state
 from nau_py.scene.mapping import MaterialTable
 from nau_py.scene.material import default_material, from_model
-from nau_py.scene.mesh import F64, SceneObject
+from nau_py.scene.mesh import F32, F64, SceneObject
+from nau_py.scene.transforms import inverse, transform_of
 from nau_py.scene.viewport import Rect, viewport_rect
 
 DEFAULT_NAME = "__nauDefault"
@@ -29,9 +32,19 @@ class World:
         self.materials = MaterialTable(project)
         builder = SceneBuilder(project)
         self.scenes: dict[str, list[SceneObject]] = {}
+        self._nodes: dict[str, Scene] = {}
+        self._moving: dict[str, dict[str, tuple[float, ...]]] = {}
         for node in project.assets.scenes:
             if node.name:
                 self.scenes.setdefault(node.name, []).extend(builder.build(node))
+                self._nodes.setdefault(node.name, node)
+        self._poses = builder.poses
+        self._reference: dict[int, F32] = {}
+        assets = project.assets
+        self.events = EventSystem(
+            assets.sensors, assets.interpolators, assets.routes, assets.scenes, self.place,
+            self.animate,
+        )  # fmt: skip
         for material in builder.materials:
             self.materials.add(from_model(project, material))
         for name in builder.new_materials:
@@ -72,6 +85,40 @@ class World:
         for item in found:
             item.matrix = wide
         self.moved |= {name}
+        self.moves += 1
+
+    def place(self, scene: str, attribute: str, values: tuple[float, ...]) -> None:
+        """Set TRANSLATE or ROTATE of a scene, four numbers; its objects follow."""
+        node = self._nodes.get(scene)
+        if node is None:
+            return
+        instead = self._moving.setdefault(scene, {})
+        before = transform_of(self.project, node, "SCENE", instead)
+        instead[attribute] = values
+        change = transform_of(self.project, node, "SCENE", instead) @ inverse(before)
+        self._changed(scene, [(o, change @ o.matrix) for o in self.scenes[scene]])
+
+    def animate(self, scene: str, fraction: float) -> None:
+        """Put the pose animation of a scene at ``fraction`` of its length."""
+        node = self._nodes.get(scene)
+        if node is None or node.type != "ScenePoses":
+            return
+        for item in self.scenes[scene]:
+            mesh = item.mesh
+            if id(mesh) not in self._poses:
+                continue
+            track, length = self._poses[id(mesh)]
+            start = self._reference.setdefault(id(mesh), mesh.positions)
+            moved = start.copy()
+            moved[:, :3] += track.offset(fraction * length)
+            mesh.attributes["position"] = moved
+            mesh.version += 1
+        self._changed(scene, [(o, o.matrix) for o in self.scenes[scene]])
+
+    def _changed(self, scene: str, places: list[tuple[SceneObject, F64]]) -> None:
+        for item, matrix in places:
+            item.matrix = matrix
+        self.moved |= {item.name for item, _ in places}
         self.moves += 1
 
     def camera(self, name: str | None) -> CameraState:

@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from nau_py.diagnostic import Diagnostic
 from nau_py.lint.rule import ERROR, NOTE, WARNING, Facts, check, rule
 from nau_py.lint.walk import nodes
-from nau_py.model.events import Interpolator, Route, Sensor
 from nau_py.model.material import ValueOf
 from nau_py.model.passes import SceneReferences, Script
 from nau_py.model.raytrace import RayVariable
@@ -38,14 +37,6 @@ L001 = rule(
     "This version does not run Lua: the pass or pipeline goes on as if there were no script.",
     "<preScript file='a.lua' script='f'/>",
     "write the value into the project file",
-)
-L003 = rule(
-    "L003",
-    WARNING,
-    "Animation is not run",
-    "This version does not run sensors, interpolators and routes: things stand where they begin.",
-    "<sensor name='t' class='TimeSensor'/>",
-    "write the position into the project file",
 )
 L004 = rule(
     "L004",
@@ -162,10 +153,18 @@ for row in (
         "out vec3 v; and in vec3 v;",
     ),
     (
+        "G005",
+        WARNING,
+        "GLSL accepted with changes",
+        "The driver rejects the text as it is, where others do not; what was changed is said.",
+        "in vec4 eye; (fragment) where the vertex stage has out vec3 eye;",
+        "in vec3 eye;",
+    ),
+    (
         "G004",
         ERROR,
         "Stage not supported",
-        "Mesh, task and tessellation stages do not run.",
+        "Mesh and task stages need the extension GL_NV_mesh_shader.",
         "<shader name='s' ms='a.mesh' ps='a.frag'/>",
         "<shader name='s' vs='a.vert' ps='a.frag'/>",
     ),
@@ -176,14 +175,6 @@ for row in (
         "A model file could not be read; what is wrong is said.",
         "f 1 2 9 in an OBJ with 3 vertices",
         "f 1 2 3",
-    ),
-    (
-        "M002",
-        ERROR,
-        "Geometry not supported",
-        "Terrain and buffers are not supported yet.",
-        "<terrain name='t' heightMap='h.png'/>",
-        "<file name='terrain.obj'/>",
     ),
     (
         "M003",
@@ -272,18 +263,6 @@ def scripts(facts: Facts) -> Iterator[Diagnostic]:
             yield L001.at(
                 node.location, f"<{node.tag}> '{node.script}' of '{node.file}' is not run"
             )
-
-
-@check
-def animation(facts: Facts) -> Iterator[Diagnostic]:
-    """Sensors, interpolators and routes, which are not run."""
-    assets = facts.project.assets
-    listed: list[Sensor | Interpolator | Route] = []
-    listed += assets.sensors
-    listed += assets.interpolators
-    listed += assets.routes
-    for node in listed:
-        yield L003.at(node.location, f"{node.tag} '{node.name}' is not run")
 
 
 @check

@@ -1,0 +1,120 @@
+"""GLSL that some drivers accept and others reject, made acceptable to both.
+
+Nau's projects were written on NVIDIA's driver, which is laxer than the standard. These changes are
+tried only where the driver at hand rejects the text as it is; each keeps the lines where they are.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+HIGHEST = 450
+"""The newest version that an OpenGL 4.5 context compiles."""
+_RESERVED = ("input", "output")
+"""Words that GLSL reserves (4.50 specification, 3.6) and that projects use as names."""
+_VERSION = re.compile(r"^([ \t]*#[ \t]*version[ \t]+)(\d+)", re.MULTILINE)
+_LAYOUT_PARAMETER = re.compile(r"([(,]\s*)layout\s*\([^)]*\)\s*(?=(?:in|out|inout|const|\w+)\s+\w)")
+_INTERFACE = re.compile(
+    r"^(?P<head>[ \t]*(?:layout\s*\([^)]*\)\s*)?(?:flat\s+|smooth\s+|noperspective\s+)?"
+    r"(?P<way>in|out)[ \t]+)(?P<type>\w+)(?P<gap>[ \t]+)(?P<name>\w+)(?P<rest>[ \t]*[;\[])",
+    re.MULTILINE,
+)
+_UNIFORM = re.compile(r"^[ \t]*uniform[ \t]+(?P<type>\w+)[ \t]+(?P<names>[\w \t,]+);", re.MULTILINE)
+_BRACES = re.compile(r"=\s*\{")
+ORDER = ("vs", "tc", "te", "gs", "ps")
+
+
+def renamed(name: str) -> str:
+    """What a reserved word is called instead."""
+    return f"nau_{name}"
+
+
+def adapt(texts: dict[str, str]) -> tuple[dict[str, str], list[str]]:
+    """The stages with changes, and what was changed. No change: the driver is right."""
+    changed = dict(texts)
+    notes: list[str] = []
+    for stage, text in texts.items():
+        changed[stage] = _alone(text, stage, notes)
+    _types_of_inputs(changed, notes)
+    _types_of_uniforms(changed, notes)
+    return changed, notes
+
+
+def _alone(text: str, stage: str, notes: list[str]) -> str:
+    code = _without_comments(text)
+    version = _VERSION.search(code)
+    number = int(version[2]) if version else 110
+    wanted = number
+    if number > HIGHEST:
+        wanted = HIGHEST
+    elif number < 420 and _BRACES.search(code):
+        wanted = 420
+    if wanted != number:
+        text = _VERSION.sub(rf"\g<1>{wanted}", text, count=1)
+        notes.append(f"stage {stage}: #version {number} became {wanted}")
+    for word in _RESERVED:
+        if re.search(rf"\b{word}\b", code):
+            text = re.sub(rf"\b{word}\b", renamed(word), text)
+            notes.append(f"stage {stage}: the reserved word '{word}' became a name")
+    if _LAYOUT_PARAMETER.search(code):
+        text = _LAYOUT_PARAMETER.sub(r"\1", text)
+        notes.append(f"stage {stage}: layout() of a function parameter was left out")
+    return text
+
+
+def _types_of_inputs(texts: dict[str, str], notes: list[str]) -> None:
+    """What a stage takes in gets the type that the stage before gives out."""
+    stages = [s for s in ORDER if s in texts]
+    for before, after in pairwise(stages):
+        if after != "ps":
+            continue  # arrays of vertices
+        given = {
+            m["name"]: m["type"]
+            for m in _INTERFACE.finditer(_without_comments(texts[before]))
+            if m["way"] == "out"
+        }
+
+        def same(match: re.Match[str], given: dict[str, str] = given) -> str:
+            name, type_ = match["name"], match["type"]
+            if match["way"] != "in" or given.get(name, type_) == type_:
+                return match[0]
+            notes.append(f"input '{name}' of stage ps became {given[name]}, as stage vs gives it")
+            return f"{match['head']}{given[name]}{match['gap']}{name}{match['rest']}"
+
+        texts[after] = _INTERFACE.sub(same, texts[after])
+
+
+def _types_of_uniforms(texts: dict[str, str], notes: list[str]) -> None:
+    """A uniform that two stages declare with different types is dropped where it is not used."""
+    types: dict[str, dict[str, str]] = {}
+    for stage, text in texts.items():
+        for match in _UNIFORM.finditer(_without_comments(text)):
+            for name in match["names"].split(","):
+                types.setdefault(name.strip(), {})[stage] = match["type"]
+    for name, listed in types.items():
+        if len(set(listed.values())) < 2:
+            continue
+        for stage in listed:
+            uses = len(re.findall(rf"\b{name}\b", _without_comments(texts[stage])))
+            if uses == 1:
+                texts[stage] = _UNIFORM.sub(lambda m, n=name: _less(m, n), texts[stage])  # type: ignore[misc]
+                notes.append(f"stage {stage}: the unused uniform '{name}' was left out")
+
+
+def _less(declaration: re.Match[str], name: str) -> str:
+    """A declaration of uniforms without ``name``."""
+    names = [n.strip() for n in declaration["names"].split(",")]
+    if name not in names:
+        return declaration[0]
+    rest = ", ".join(n for n in names if n != name)
+    return f"uniform {declaration['type']} {rest};" if rest else ""
+
+
+def _without_comments(text: str) -> str:
+    """``text`` with comments blanked out, line for line."""
+
+    def blank(match: re.Match[str]) -> str:
+        return re.sub(r"[^\n]", " ", match[0])
+
+    return re.sub(r"//[^\n]*|/\*.*?\*/", blank, text, flags=re.DOTALL)
