@@ -12,6 +12,7 @@ from nau_py.version import __version__
 
 EXTRAS = {
     "exr": ("OpenEXR", "openexr", "EXR pictures"),
+    "lua": ("lupa", "lupa", "Lua scripts of projects"),
 }
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import Registry
 from nau_py.model.library import DEFAULT_LIBRARY, MaterialLibrary
 from nau_py.model.material import Material
@@ -90,8 +91,14 @@ class Project:
         """
         attribute = self.registry[type_].attributes[name]
         parts = node.get(name)
-        if parts is None:
-            return attribute.default
+        return self.default(type_, name) if parts is None else self._resolved(attribute, parts)
+
+    def default(self, type_: str, name: str) -> tuple[Scalar, ...]:
+        """The default of an attribute; a user attribute's may name a constant."""
+        attribute = self.registry[type_].attributes[name]
+        return self._resolved(attribute, attribute.default) if attribute.default else ()
+
+    def _resolved(self, attribute: Attribute, parts: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
         if not attribute.type.is_number:
             return parts
         numbers = [self.number(p) for p in parts]

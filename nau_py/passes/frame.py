@@ -76,6 +76,8 @@ class Session:
     materials: dict[str, PassMaterials] = field(default_factory=dict)
     tracers: dict[str, Any] = field(default_factory=dict)
     progress: Progress = no_progress
+    first_frame: int = 0
+    """The frame that counts as 0: scripts may set FRAME_COUNT."""
 
     def pass_materials(self, pass_: Pass) -> PassMaterials:
         """The material mapping of a pass, made once."""

@@ -249,12 +249,15 @@ class Resources:
                 )
             if texture is None:
                 return None
+            channels = texture.format.channels
             sizes = {
                 "WIDTH": texture.width,
                 "HEIGHT": texture.height,
                 "LEVELS": texture.levels,
                 "LAYERS": texture.layers,
                 "ID": texture.glo,
+                "COMPONENT_COUNT": channels,
+                "ELEMENT_SIZE": 8 * channels * np.dtype(texture.format.dtype).itemsize,
             }
             return np.array([sizes[component]]) if component in sizes else None
         return None

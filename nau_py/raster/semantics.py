@@ -92,6 +92,9 @@ def normal_matrix(view_model: F64) -> F64:
 
 
 def _renderer(context: DrawContext, component: str) -> Value | None:
+    written = context.world.renderer_values.get(component)
+    if written is not None:
+        return _scalars(written)
     v, p, m = context.view, context.projection, context.model
     matrices: dict[str, Callable[[], F64]] = {
         "PROJECTION": lambda: p,
@@ -123,9 +126,9 @@ def _renderer(context: DrawContext, component: str) -> Value | None:
 def _default(type_: str, component: str, context: DrawContext) -> Value | None:
     set_ = context.world.project.registry.get(type_)
     attribute = set_.get(component) if set_ else None
-    if attribute is None or not attribute.default or isinstance(attribute.default[0], str):
+    if attribute is None or not attribute.default or not attribute.type.is_number:
         return None
-    return _scalars(attribute.default)
+    return _scalars(context.world.project.default(type_, component))
 
 
 def _camera(context: DrawContext, name: str, component: str) -> Value | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -26,6 +27,7 @@ from nau_py.passes.frame import (
 )
 from nau_py.run.choose import choose_pipeline
 from nau_py.run.report import machine_facts, make_report
+from nau_py.run.scripts import MAX_REPEATS, Scripts, hooks
 from nau_py.scene.names import default_material_names
 from nau_py.scene.viewport import Rect
 from nau_py.scene.world import World
@@ -70,6 +72,8 @@ class Renderer:
         keep_targets: bool = False,
         progress: Progress = no_progress,
     ) -> None:
+        if hooks(project):  # scripts write into the project that they run in: not the caller's
+            project = copy.deepcopy(project)
         self.project = project
         self.diagnostics: list[Diagnostic] = lint(
             project, pass_classes(), default_material_names(project)
@@ -85,6 +89,7 @@ class Renderer:
         self._options = options or RunOptions()
         self._progress = progress
         self._session: Session | None = None
+        self._scripts: Scripts | None = None
         self._next = 0
         self._setup_ms = 0.0
 
@@ -102,6 +107,14 @@ class Renderer:
         ]
         if errors:
             raise ProjectError(errors)
+
+    @property
+    def scripts(self) -> Scripts:
+        """The project's Lua scripts, loaded at the first frame."""
+        if self._scripts is None:
+            self._scripts = Scripts(self.project)
+            self._note(self._scripts.diagnostics)
+        return self._scripts
 
     @property
     def session(self) -> Session:
@@ -172,7 +185,9 @@ class Renderer:
         """Free the GPU objects. Rendering again starts from frame 0."""
         if self._session is not None:
             self._session.resources.release()
-        self._session, self._next = None, 0
+        if self._scripts is not None:
+            self._scripts.attributes.restore()
+        self._session, self._scripts, self._next = None, None, 0
 
     def _step(self, index: int) -> list[PassRecord]:
         session = self.session
@@ -182,9 +197,24 @@ class Renderer:
         timer = index * self.time_step * 1000.0
         session.world.events.frame(index * self.time_step)
         context = FrameContext(
-            session, index, timer, camera, Rect(0.0, 0.0, float(width), float(height))
+            session,
+            index - session.first_frame,
+            timer,
+            camera,
+            Rect(0.0, 0.0, float(width), float(height)),
         )
-        return [self._run(step, context) for step in self.plan.steps]
+        scripts = self.scripts
+        first = self.plan.steps[0].pass_ if self.plan.steps else None
+        if first is not None and context.index == 0:
+            scripts.call(self.pipeline.preScript, context, first)
+        if first is not None and not scripts.test(self.pipeline.testScript, context, first):
+            reason = f"the pipeline's test '{self.pipeline.testScript.script}' says no"  # type: ignore[union-attr]
+            return [
+                PassRecord(s.name, s.pass_.pass_class, "left_out", reason) for s in self.plan.steps
+            ]
+        records = [self._run(step, context) for step in self.plan.steps]
+        self._note(scripts.diagnostics)
+        return records
 
     def _run(self, step: Step, context: FrameContext) -> PassRecord:
         record = PassRecord(step.name, step.pass_.pass_class)
@@ -193,6 +223,31 @@ class Renderer:
             record.status, record.reason = "left_out", reason
             return record
         start = perf_counter()
+        pass_, scripts = step.pass_, self.scripts
+        scripts.call(pass_.preScript, context, pass_)
+        times = 0
+        while times < MAX_REPEATS and scripts.test(pass_.testScript, context, pass_):
+            self._execute(step, context, record)
+            times += 1
+            if pass_.testScript is None or pass_.testScript.TEST_MODE != "RUN_WHILE":
+                break
+        scripts.call(pass_.postScript, context, pass_)
+        if times == 0 and pass_.testScript is not None:
+            record.status = "left_out"
+            record.reason = f"its test '{pass_.testScript.script}' says no"
+        elif times > 1:
+            record.notes.append(f"it ran {times} times")
+        record.ms = (perf_counter() - start) * 1000
+        if record.nonfinite:
+            message = f"pass '{step.name}': {record.nonfinite} samples or rays were not finite"
+            message += record.blame
+            if context.session.options.check_numerics:
+                raise NauError(error("T014", step.pass_.location, message))
+            self._note([warning("T014", step.pass_.location, message)])
+        self._note(context.session.resources.diagnostics)
+        return record
+
+    def _execute(self, step: Step, context: FrameContext, record: PassRecord) -> None:
         try:
             pass_classes()[step.pass_.pass_class].execute(step.pass_, context, record)
             context.session.resources.device.ctx.finish()
@@ -205,15 +260,6 @@ class Renderer:
                 f"{type(bug).__name__}: {bug}"
             )
             raise NauError(error("E001", step.pass_.location, message)) from bug
-        record.ms = (perf_counter() - start) * 1000
-        if record.nonfinite:
-            message = f"pass '{step.name}': {record.nonfinite} samples or rays were not finite"
-            message += record.blame
-            if context.session.options.check_numerics:
-                raise NauError(error("T014", step.pass_.location, message))
-            self._note([warning("T014", step.pass_.location, message)])
-        self._note(context.session.resources.diagnostics)
-        return record
 
     def _note(self, found: list[Diagnostic]) -> None:
         """Add findings that are new; those of one pass and rule are kept once a run."""

@@ -50,6 +50,8 @@ class World:
         for name in builder.new_materials:
             self.materials.add(default_material(project, name))
         self.diagnostics: list[Diagnostic] = builder.diagnostics
+        self.renderer_values: dict[str, tuple[float, ...]] = {}
+        """RENDERER attributes that scripts have set."""
         self.moved: frozenset[str] = frozenset()
         """Names of objects that have been moved."""
         self.moves = 0

@@ -222,10 +222,6 @@ def test_the_demos_have_no_finding() -> None:
             ),
             "D004 error `pass` cycle: pass 'draw' samples texture L::c while drawing into it",
         ),
-        (
-            DRAW.format("<preScript file='project.xml' script='f'/>"),
-            "L001 warning `preScript` <preScript> 'f' of 'project.xml' is not run",
-        ),
     ],
 )
 def test_pass_findings(folder: Folder, passes: str, expected: str) -> None:

@@ -8,7 +8,7 @@ from nau_py.diagnostic import Diagnostic
 from nau_py.lint.rule import ERROR, NOTE, WARNING, Facts, check, rule
 from nau_py.lint.walk import nodes
 from nau_py.model.material import ValueOf
-from nau_py.model.passes import SceneReferences, Script
+from nau_py.model.passes import SceneReferences
 from nau_py.model.raytrace import RayVariable
 
 UNSUPPLIED_TYPES = (
@@ -30,14 +30,6 @@ UNSUPPLIED_TYPES = (
 )
 """Object types of which uniforms and parameters get no value yet."""
 
-L001 = rule(
-    "L001",
-    WARNING,
-    "Lua script is not run",
-    "This version does not run Lua: the pass or pipeline goes on as if there were no script.",
-    "<preScript file='a.lua' script='f'/>",
-    "write the value into the project file",
-)
 L004 = rule(
     "L004",
     WARNING,
@@ -169,6 +161,31 @@ for row in (
         "<shader name='s' vs='a.vert' ps='a.frag'/>",
     ),
     (
+        "L001",
+        WARNING,
+        "Lua is not installed",
+        "Scripts run with the extra `lua`; without it passes go on as if there were none.",
+        "<preScript file='a.lua' script='f'/> after pip install nau_py",
+        "pip install 'nau_py[lua]'",
+    ),
+    (
+        "L008",
+        WARNING,
+        "Lua script failed",
+        "The file does not load, or a function raised, ran too long or used too much memory. As in "
+        "Nau, its functions are not called any more and its tests say no.",
+        "function f() return nothing.x end",
+        "function f() return true end",
+    ),
+    (
+        "L009",
+        WARNING,
+        "Lua script wants to write a file",
+        "Scripts of a project write none: the picture and the targets are nau-run's to write.",
+        "saveTexture('L::colour')",
+        "nau-run project.xml --targets out",
+    ),
+    (
         "M001",
         ERROR,
         "Model unreadable",
@@ -253,16 +270,6 @@ for row in (
     ),
 ):
     rule(*row)
-
-
-@check
-def scripts(facts: Facts) -> Iterator[Diagnostic]:
-    """Lua hooks, which are not run."""
-    for node in nodes(facts.project):
-        if isinstance(node, Script):
-            yield L001.at(
-                node.location, f"<{node.tag}> '{node.script}' of '{node.file}' is not run"
-            )
 
 
 @check

@@ -1,0 +1,190 @@
+"""Attributes by name while a project runs: Lua's getAttr and setAttr (nau-format.md, 12)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from nau_py.diagnostic import listing, nearest
+from nau_py.model.linked import Project
+from nau_py.model.node import Configured, Setting
+from nau_py.model.passes import Pass
+from nau_py.passes.frame import FrameContext
+from nau_py.scene.material import ImageBinding, RenderMaterial
+
+SETTABLE = ("RENDERER", "PASS", "CAMERA", "LIGHT", "VIEWPORT", "COLOR", "IMAGE_TEXTURE")
+BUFFER_TYPES: dict[str, str] = {
+    "INT": "<i4",
+    "UINT": "<u4",
+    "FLOAT": "<f4",
+    "DOUBLE": "<f8",
+    "BYTE": "<i1",
+    "UBYTE": "<u1",
+    "SHORT": "<i2",
+    "USHORT": "<u2",
+    "BOOL": "<u4",
+}
+_VECTORS = {"VEC": ("<f4", ""), "IVEC": ("<i4", "I"), "UIVEC": ("<u4", "UI"), "DVEC": ("<f8", "D")}
+
+
+class Attributes:
+    """Reads and writes attributes of a running project; raises ValueError with the names that
+    there are. What is changed in the project's own nodes is put back by :meth:`restore`."""
+
+    def __init__(self, project: Project) -> None:
+        self.project = project
+        self._changed: list[tuple[Configured, str, Setting | None]] = []
+
+    def get(
+        self, frame: FrameContext, pass_: Pass, type_: str, name: str, component: str, index: int
+    ) -> list[float]:
+        """The numbers of an attribute; matrices column by column."""
+        from nau_py.passes.drawing import camera_context
+        from nau_py.raster.semantics import resolve
+
+        if type_ == "IMAGE_TEXTURE" and component != "UNIT":
+            settings = dict(self._image(frame, name, index).settings)
+            return [float(v) for v in settings.get(component, (0,))]
+        if type_ == "VIEWPORT" and name != "CURRENT":
+            values = self.project.value(self._viewport(name), "VIEWPORT", component)
+            return [float(v) for v in values]
+        context = camera_context(pass_, frame, frame.session.resources.window)
+        found = resolve(context, type_, name, component, index)
+        if found is None:
+            raise ValueError(f"{type_} '{name}' has no attribute '{component}' that can be read")
+        return [float(v) for v in np.asarray(found).reshape(-1)]
+
+    def set(
+        self,
+        frame: FrameContext,
+        pass_: Pass,
+        type_: str,
+        name: str,
+        component: str,
+        index: int,
+        values: list[float],
+    ) -> None:
+        """Write an attribute. Neither read-only flags nor ranges are checked, as in Nau."""
+        if type_ not in SETTABLE:
+            raise ValueError(
+                f"attributes of {type_} cannot be set, those of {listing(SETTABLE)} can"
+            )
+        if type_ not in ("IMAGE_TEXTURE",):
+            self._known(type_, component)
+        parts = tuple(values)
+        if type_ == "RENDERER":
+            self._renderer(frame, component, values)
+        elif type_ == "PASS":
+            self._write(self._pass(pass_, name), component, parts)
+        elif type_ == "VIEWPORT":
+            self._write(self._viewport(name), component, parts)
+        elif type_ == "CAMERA":
+            camera = frame.camera if name == "CURRENT" else frame.world.camera(name)
+            camera.apply(component, parts)
+        elif type_ == "LIGHT":
+            lights = frame.lights(pass_)
+            light = lights[index] if name == "CURRENT" else frame.world.light(name)
+            light.values[component] = parts
+        elif type_ == "COLOR":
+            self._material(frame, name).colours[component] = parts
+        else:
+            image = self._image(frame, name, index)
+            settings = dict(image.settings) | {component: tuple(int(v) for v in values)}
+            material = self._material(frame, name)
+            material.images[index] = ImageBinding(image.texture, tuple(settings.items()))
+
+    def restore(self) -> None:
+        """Undo what was written into the project's nodes."""
+        for node, name, before in reversed(self._changed):
+            if before is None:
+                node.settings.pop(name, None)
+            else:
+                node.settings[name] = before
+        self._changed.clear()
+
+    def _known(self, type_: str, component: str) -> None:
+        names = [a.name for a in self.project.registry[type_]]
+        if component not in names:
+            raise ValueError(f"{type_} has no attribute '{component}'{nearest(component, names)}")
+
+    def _write(self, node: Configured, name: str, parts: tuple[float, ...]) -> None:
+        self._changed.append((node, name, node.settings.get(name)))
+        node.settings[name] = Setting(parts)
+
+    def _renderer(self, frame: FrameContext, component: str, values: list[float]) -> None:
+        if component == "FRAME_COUNT":
+            frame.session.first_frame += frame.index - int(values[0])
+            frame.index = int(values[0])
+        else:
+            whole = self.project.registry["RENDERER"].attributes[component].type.is_integer
+            parts = tuple(float(int(v)) if whole else v for v in values)
+            frame.world.renderer_values[component] = parts
+
+    def _pass(self, running: Pass, name: str) -> Pass:
+        if name == "CURRENT":
+            return running
+        pipeline, _, short = name.partition("#")
+        passes = {f"{p.name}#{q.name}": q for p in self.project.pipelines for q in p.passes}
+        found = passes.get(f"{pipeline}#{short}")
+        if found is None:
+            raise ValueError(f"there is no pass '{name}'{nearest(name, list(passes))}")
+        return found
+
+    def _viewport(self, name: str) -> Configured:
+        nodes = {v.name or "": v for v in self.project.assets.viewports}
+        if name not in nodes:
+            raise ValueError(f"there is no viewport '{name}'{nearest(name, list(nodes))}")
+        return nodes[name]
+
+    def _material(self, frame: FrameContext, name: str) -> RenderMaterial:
+        library, _, material = name.partition("::")
+        found = frame.world.materials.get(library, material)
+        if found is None:
+            raise ValueError(f"there is no material '{name}'")
+        return found
+
+    def _image(self, frame: FrameContext, name: str, unit: int) -> ImageBinding:
+        images = self._material(frame, name).images
+        if unit not in images:
+            raise ValueError(
+                f"material '{name}' has no image texture on unit {unit}; it has {sorted(images)}"
+            )
+        return images[unit]
+
+
+def _layout(type_: str) -> tuple[np.dtype[Any], int]:
+    if type_ in BUFFER_TYPES:
+        return np.dtype(BUFFER_TYPES[type_]), 1
+    for prefix, (code, _) in _VECTORS.items():
+        if type_.startswith(prefix) and type_[len(prefix) :] in ("2", "3", "4"):
+            return np.dtype(code), int(type_[len(prefix) :])
+    known = listing(list(BUFFER_TYPES))
+    raise ValueError(f"'{type_}' is no type of a buffer's entry; there is {known}")
+
+
+def _storage(frame: FrameContext, name: str, offset: int, size: int) -> Any:
+    found = frame.session.resources.buffer(name)
+    if found is None:
+        raise ValueError(f"there is no buffer '{name}'")
+    if offset < 0 or offset + size > found.size:
+        raise ValueError(f"buffer '{name}' has {found.size} bytes: none at {offset}")
+    return found
+
+
+def get_buffer(frame: FrameContext, name: str, offset: int, type_: str) -> list[float]:
+    """One value at a byte offset. Raises ValueError."""
+    dtype, count = _layout(type_)
+    size = dtype.itemsize * count
+    raw = _storage(frame, name, offset, size).read(size, offset=offset)
+    return [float(v) for v in np.frombuffer(raw, dtype)]
+
+
+def set_buffer(
+    frame: FrameContext, name: str, offset: int, type_: str, values: list[float]
+) -> None:
+    """Write one value at a byte offset. Raises ValueError."""
+    dtype, count = _layout(type_)
+    whole = np.zeros(count, dtype)
+    whole[: len(values)] = np.array(values[:count]).astype(dtype)
+    _storage(frame, name, offset, whole.nbytes).write(whole.tobytes(), offset=offset)
