@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,7 @@ from nau_py.model.linked import Project
 from nau_py.model.passes import Pass, ProcessBuffer, ProcessTexture
 from nau_py.passes.access import buffer, texture
 from nau_py.passes.frame import FrameContext, PassRecord
-from nau_py.scene.mesh import F64
+from nau_py.scene.mesh import F64, SceneObject
 from nau_py.scene.viewport import Rect
 
 if TYPE_CHECKING:
@@ -55,12 +56,21 @@ def target_and_rect(pass_: Pass, frame: FrameContext, uses_camera: bool) -> tupl
     return target, rect
 
 
-def begin(pass_: Pass, frame: FrameContext, uses_camera: bool, clears: bool = True) -> Target:
-    """Bind the target of a pass and clear it. Leaves the pass's rectangle in ``frame.rect``."""
+def begin(
+    pass_: Pass,
+    frame: FrameContext,
+    uses_camera: bool,
+    clears: bool = True,
+    window_clear: tuple[float, float, float, float] | None = None,
+) -> Target:
+    """Bind the target of a pass and clear it. Leaves the pass's rectangle in ``frame.rect``.
+    ``window_clear``: the window's colour in the place of the viewport's."""
     from nau_py.raster.state import apply_stencil, reset_state
 
     project = frame.project
     target, rect = target_and_rect(pass_, frame, uses_camera)
+    if window_clear is not None and target is frame.session.resources.window:
+        rect = replace(rect, clear=window_clear)
     frame.rect = rect
     reset_state()
     target.bind(rect)
@@ -111,13 +121,20 @@ def camera_context(pass_: Pass, frame: FrameContext, target: Target) -> DrawCont
     return draw_context(pass_, frame, target, projection, view, lights=True)
 
 
-def draw_scenes(pass_: Pass, frame: FrameContext, target: Target, record: PassRecord) -> None:
-    """Draw the scenes of a pass with the current camera, between its process items."""
+def draw_scenes(
+    pass_: Pass,
+    frame: FrameContext,
+    target: Target,
+    record: PassRecord,
+    more: Sequence[SceneObject] = (),
+) -> None:
+    """Draw the scenes of a pass, and ``more``, with the current camera, between its process
+    items."""
     from nau_py.raster.draw import draw, draw_list
 
     process(pass_.preProcess, frame)
     materials = frame.session.pass_materials(pass_)
-    objects = frame.world.objects(pass_.scene_names)
+    objects = [*frame.world.objects(pass_.scene_names), *more]
     draw(draw_list(objects, materials.__getitem__), camera_context(pass_, frame, target))
     frame.session.resources.barrier()
     process(pass_.postProcess, frame)

@@ -96,6 +96,8 @@ class FrameContext:
     timer_ms: float
     camera: CameraState
     rect: Rect
+    records: list[PassRecord] = field(default_factory=list)
+    """Of the passes of this frame so far."""
 
     @property
     def project(self) -> Project:

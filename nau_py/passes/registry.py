@@ -36,15 +36,23 @@ def pass_classes() -> dict[str, PassClass]:
     from nau_py.passes.compute import ComputeClass
     from nau_py.passes.default import DefaultClass
     from nau_py.passes.depthmap import DepthmapClass
+    from nau_py.passes.geometry_plugin import GeometryPluginClass
     from nau_py.passes.mask import MaskClass
+    from nau_py.passes.profiler import ProfilerClass
     from nau_py.passes.quad import QuadClass
+    from nau_py.passes.ray_query import RayQueryClass
     from nau_py.passes.raytrace import RaytraceClass
 
-    raytrace = RaytraceClass()
+    raytrace, query, depthmap = RaytraceClass(), RayQueryClass(), DepthmapClass()
     found: dict[str, PassClass] = {
         "default": DefaultClass(),
         "quad": QuadClass(),
-        "depthmap": DepthmapClass(),
+        "depthmap": depthmap,
+        "depthmap2": depthmap,
+        "geometryPI": GeometryPluginClass(),
+        "profiler": ProfilerClass(),
+        "optixPrime": query,
+        "embree": query,
         "compute": ComputeClass(),
         "mask": MaskClass(),
         "raytrace": raytrace,

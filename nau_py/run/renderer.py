@@ -99,8 +99,8 @@ class Renderer:
             error(
                 "P002",
                 pass_.where("class"),
-                f"pass '{pass_.name}': class '{pass_.pass_class}' is not supported by this "
-                f"version, so pipeline '{self.pipeline.name}' does not run",
+                f"pass '{pass_.name}': class '{pass_.pass_class}' {_lacking(pass_.pass_class)}, so "
+                f"pipeline '{self.pipeline.name}' does not run",
             )
             for pass_ in self.pipeline.passes
             if pass_.pass_class not in known
@@ -212,9 +212,10 @@ class Renderer:
             return [
                 PassRecord(s.name, s.pass_.pass_class, "left_out", reason) for s in self.plan.steps
             ]
-        records = [self._run(step, context) for step in self.plan.steps]
+        for step in self.plan.steps:
+            context.records.append(self._run(step, context))
         self._note(scripts.diagnostics)
-        return records
+        return context.records
 
     def _run(self, step: Step, context: FrameContext) -> PassRecord:
         record = PassRecord(step.name, step.pass_.pass_class)
@@ -301,3 +302,10 @@ def _skipped_by_mode(mode: str, index: int) -> str:
         "RUN_ODD": index % 2 == 0,
     }
     return f"its mode is {mode} and this is frame {index}" if skipped.get(mode) else ""
+
+
+def _lacking(class_: str) -> str:
+    """Why a pass class does not run."""
+    if class_ == "mesh":
+        return "needs the OpenGL extension GL_NV_mesh_shader, which nau_py does not use"
+    return "is not supported by this version"

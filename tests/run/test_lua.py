@@ -13,6 +13,8 @@ import nau_py
 from nau_py.run.sandbox import LuaError, Sandbox
 from tests.conftest import Folder
 
+pytest.importorskip("lupa", reason="the extra lua is not installed")
+
 QUAD = """\
 <project name="P" width="8" height="8"><assets>
  <attributes><attribute type="RENDERER" name="shade" data="FLOAT" value="0.25"/>

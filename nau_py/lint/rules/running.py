@@ -236,6 +236,15 @@ for row in (
         "<SIZE width='1024' height='8'/>",
     ),
     (
+        "P011",
+        ERROR,
+        "Ray buffer missing",
+        "A pass of class optixPrime or embree reads rays from a buffer and writes hits into one; "
+        "both need a size.",
+        "<rays buffer='L::rays' queryType='ANY'/> without SIZE or DIM",
+        "<buffer name='rays'><SIZE value='3200'/></buffer>",
+    ),
+    (
         "T010",
         ERROR,
         "Ray program raised",

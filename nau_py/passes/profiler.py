@@ -1,0 +1,55 @@
+"""Class ``profiler``: what the passes of this frame have cost so far, written over the picture."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from nau_py.graph.contract import Access
+from nau_py.model.linked import Project
+from nau_py.model.passes import Pass
+from nau_py.passes.access import add_process, add_target
+
+if TYPE_CHECKING:
+    from nau_py.passes.frame import FrameContext, PassRecord
+
+MARGIN, LINE, COLUMN = 10, 12, 150
+"""Pixels from the upper left corner, from line to line, and from names to times."""
+
+
+class ProfilerClass:
+    """Draws a line of text a pass; clears nothing."""
+
+    def access(self, project: Project, pass_: Pass) -> Access:
+        access = Access()
+        add_process(access, pass_)
+        add_target(access, project, pass_, clears=False)
+        return access
+
+    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
+        from nau_py.passes.drawing import target_and_rect
+
+        target, _ = target_and_rect(pass_, frame, uses_camera=False)
+        texture = target.textures[target.colors[0].name]
+        lines = [(r.name, r.ms) for r in frame.records if r.status == "run"]
+        lines.append(("frame", sum(r.ms for r in frame.records)))
+        values = texture.read()
+        written = _text(lines, target.width, target.height)
+        if written.any() and texture.format.dtype == np.uint8:
+            values[..., :3][written] = 255
+            texture.write(values)
+
+
+def _text(
+    lines: list[tuple[str, float]], width: int, height: int
+) -> np.ndarray[tuple[int, int], np.dtype[np.bool_]]:
+    """Which pixels the lines cover, (height, width), row 0 at the bottom."""
+    image = Image.new("L", (width, height))
+    drawing, font = ImageDraw.Draw(image), ImageFont.load_default()
+    for index, (name, ms) in enumerate(lines):
+        y = MARGIN + index * LINE
+        drawing.text((MARGIN, y), name, 255, font)
+        drawing.text((MARGIN + COLUMN, y), f"{ms:8.2f} ms", 255, font)
+    return np.asarray(image)[::-1] > 127

@@ -1,0 +1,112 @@
+"""Classes ``optixPrime`` and ``embree``: a buffer of rays to one of hits (nau-format.md, 7.3)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.diagnostic import error
+from nau_py.errors import NauError
+from nau_py.graph.contract import Access
+from nau_py.model.library import qualified
+from nau_py.model.linked import Project
+from nau_py.model.pass_classes import RayBuffer, RayQueryPass
+from nau_py.model.passes import Pass
+from nau_py.passes.access import buffer
+
+if TYPE_CHECKING:
+    from nau_py.passes.frame import FrameContext, PassRecord
+    from nau_py.raytrace.accel import Accelerator
+
+RAY_BYTES, HIT_BYTES = 32, 16
+"""Origin, tmin, direction, tmax as float32; t, triangle (int32), u, v."""
+MISS = -1.0
+
+
+class RayQueryClass:
+    """Traces rays that shaders have written; no program runs at the hits."""
+
+    def access(self, project: Project, pass_: Pass) -> Access:
+        access = Access()
+        if isinstance(pass_, RayQueryPass):
+            if pass_.rays is not None:
+                access.add_read(buffer(pass_.rays.buffer, pass_.rays.fromLibrary))
+            if pass_.rayCount is not None and pass_.rayCount.buffer:
+                access.add_read(buffer(pass_.rayCount.buffer, None))
+            if pass_.hits is not None:
+                access.add_write(buffer(pass_.hits.buffer, pass_.hits.fromLibrary))
+        return access
+
+    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
+        if not isinstance(pass_, RayQueryPass) or pass_.rays is None or pass_.hits is None:
+            return
+        rays, hits = _storage(pass_, pass_.rays, frame), _storage(pass_, pass_.hits, frame)
+        count = min(_count(pass_, frame, hits.size), rays.size // RAY_BYTES, hits.size // HIT_BYTES)
+        if count <= 0:
+            return
+        given = np.frombuffer(rays.read(count * RAY_BYTES), np.float32).reshape(-1, 8)
+        hits.write(_trace(_accelerator(pass_, frame), given).tobytes())
+        frame.session.resources.barrier()
+        record.rays = {"query": count}
+
+
+def _storage(pass_: RayQueryPass, node: RayBuffer, frame: FrameContext) -> Any:
+    name = qualified(node.buffer or "", node.fromLibrary or "")
+    found = frame.session.resources.buffer(name)
+    if found is None:
+        message = f"pass '{pass_.name}': buffer '{name}' has no size"
+        raise NauError(error("P011", node.where("buffer"), message))
+    return found
+
+
+def _count(pass_: RayQueryPass, frame: FrameContext, hit_bytes: int) -> int:
+    """RAY_COUNT, or ``rayCount``, or as many as the hits have room for."""
+    if "RAY_COUNT" in pass_.settings:
+        return int(frame.project.value(pass_, "PASS", "RAY_COUNT")[0])
+    node = pass_.rayCount
+    if node is not None and node.buffer:
+        storage = frame.session.resources.buffer(node.buffer)
+        if storage is not None:
+            return int.from_bytes(storage.read(4, offset=node.offset or 0), "little")
+    if node is not None and node.value is not None:
+        return int(frame.project.number(node.value))
+    return hit_bytes // HIT_BYTES
+
+
+def _accelerator(pass_: RayQueryPass, frame: FrameContext) -> Accelerator:
+    """Of the first object of the scene, in its own space, as Nau has it; kept from frame to
+    frame."""
+    from nau_py.raytrace.accel import Accelerator
+    from nau_py.raytrace.geometry import RayGeometry
+
+    name = pass_.scene.name if pass_.scene else None
+    objects = frame.world.objects([name or ""])
+    mesh = objects[0].mesh if objects else None
+    key = f"rays of {name}"
+    kept = frame.session.tracers.get(key)
+    version = (id(mesh), mesh.version if mesh else 0)
+    if kept is None or kept[0] != version:
+        groups = [g.indices.astype(np.int32) for g in mesh.groups] if mesh else []
+        triangles = np.concatenate(groups) if groups else np.zeros((0, 3), np.int32)
+        points = mesh.positions[:, :3] if mesh else np.zeros((0, 3), np.float32)
+        owner = np.zeros(len(triangles), np.int32)
+        geometry = RayGeometry(np.ascontiguousarray(points, np.float32), triangles, owner, [""])
+        kept = frame.session.tracers[key] = (version, Accelerator(geometry))
+    found = kept[1]
+    assert isinstance(found, Accelerator)
+    return found
+
+
+def _trace(accelerator: Accelerator, rays: NDArray[np.float32]) -> NDArray[np.void]:
+    """Nearest hits, which do for ANY as well; t < 0 where there is none."""
+    origin, near, direction, far = rays[:, :3], rays[:, 3], rays[:, 4:7], rays[:, 7]
+    start = origin + direction * np.maximum(near, 0)[:, None]
+    found = accelerator.intersect(start, direction, np.maximum(far - near, 0))
+    hit = (found.triangle >= 0) & (far >= near)
+    result = np.zeros(len(rays), [("t", "<f4"), ("triangle", "<i4"), ("u", "<f4"), ("v", "<f4")])
+    result["t"] = np.where(hit, found.t + np.maximum(near, 0), MISS)
+    result["triangle"] = np.where(hit, found.triangle, -1)
+    result["u"], result["v"] = np.where(hit, found.u, 0), np.where(hit, found.v, 0)
+    return result
