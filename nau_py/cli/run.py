@@ -36,6 +36,16 @@ def _frames(text: str) -> tuple[int, int]:
     return first, last
 
 
+def _parameters(texts: list[str]) -> dict[str, str]:
+    found = {}
+    for text in texts:
+        name, equals, value = text.partition("=")
+        if not equals or not name.strip():
+            raise typer.BadParameter(f"'{text}' sets nothing; write NAME=VALUE")
+        found[name.strip()] = value.strip()
+    return found
+
+
 def _numbered(path: Path) -> bool:
     return re.search(r"%0?\d*d", path.name) is not None
 
@@ -64,6 +74,10 @@ def run(
         bool, typer.Option(help="Fail on any value that is not finite.")
     ] = False,
     show_mask: Annotated[bool, typer.Option(help="Tint the traced pixels of the picture.")] = False,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", help="NAME=VALUE of the project's interface; may be repeated."),
+    ] = None,
     quiet: Annotated[bool, typer.Option(help="No table, no progress, no warnings.")] = False,
     debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
     doctor: Annotated[bool, typer.Option(help="Say what this machine has and lacks.")] = False,
@@ -77,6 +91,7 @@ def run(
         sys.stderr.write("Missing argument 'PROJECT'. Try 'nau-run --help'.\n")
         raise typer.Exit(USAGE)
     window, (first, last) = _size(size), _frames(frames)
+    given = _parameters(set_ or [])
     import nau_py
     from nau_py.cli.progress import progress_bar
     from nau_py.passes.frame import RunOptions
@@ -106,6 +121,7 @@ def run(
                 time_step=time_step,
                 keep_targets=targets is not None,
                 progress=progress,
+                parameters=given,
             )
             reports = _render(renderer, output, targets, first, last, show_mask)
         if not quiet:

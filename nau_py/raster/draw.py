@@ -119,7 +119,7 @@ def set_uniforms(program: Program, context: DrawContext) -> None:
 def _draw_mesh(item: DrawItem, program: Program, resources: Resources, instances: int) -> None:
     array = resources.geometry.vertex_array(item.mesh, program)
     gpu = resources.geometry.upload(item.mesh)
-    mode = _MODES[item.mesh.primitive]
+    mode = _MODES["TRIANGLES_ADJACENCY" if item.mesh.adjacency else item.mesh.primitive]
     if program.is_tessellated:
         points = item.mesh.groups[item.group].indices.shape[1]
         mode = GL.GL_PATCHES

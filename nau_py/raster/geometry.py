@@ -9,6 +9,7 @@ import numpy as np
 
 from nau_py.raster import gl
 from nau_py.raster.programs import Program
+from nau_py.scene.adjacency import with_neighbours
 from nau_py.scene.mesh import Mesh
 
 
@@ -43,9 +44,12 @@ class Geometry:
             name: self._ctx.buffer(np.ascontiguousarray(values).tobytes())
             for name, values in mesh.attributes.items()
         }
-        counts = [group.indices.size for group in mesh.groups]
+        listed = [group.indices for group in mesh.groups]
+        if mesh.adjacency:
+            listed = [with_neighbours(indices) for indices in listed]
+        counts = [indices.size for indices in listed]
         first = [0, *np.cumsum(counts)[:-1].tolist()]
-        flat = np.concatenate([group.indices.reshape(-1) for group in mesh.groups])
+        flat = np.concatenate([indices.reshape(-1) for indices in listed])
         indices = self._ctx.buffer(flat.astype(np.uint32).tobytes())
         gpu = GpuMesh(buffers, indices, first, counts, mesh.version)
         self._meshes[id(mesh)] = (mesh, gpu)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Mapping
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
@@ -26,6 +27,7 @@ from nau_py.passes.frame import (
     no_progress,
 )
 from nau_py.run.choose import choose_pipeline
+from nau_py.run.parameters import parse
 from nau_py.run.report import machine_facts, make_report
 from nau_py.run.scripts import MAX_REPEATS, Scripts, hooks
 from nau_py.scene.names import default_material_names
@@ -56,7 +58,8 @@ class Renderer:
     """Renders frames of one pipeline.
 
     ``size`` overrides the window (width, height), pixels. ``keep_targets`` runs every pass that
-    writes something, so that all targets can be read. Raises
+    writes something, so that all targets can be read. ``parameters``: values, as text, of what the
+    project's interface offers, by name. Raises
     :class:`~nau_py.errors.ProjectError` for a project with lint errors,
     :class:`~nau_py.errors.DeviceError` without OpenGL.
     """
@@ -71,9 +74,11 @@ class Renderer:
         time_step: float = DEFAULT_TIME_STEP,
         keep_targets: bool = False,
         progress: Progress = no_progress,
+        parameters: Mapping[str, str] | None = None,
     ) -> None:
-        if hooks(project):  # scripts write into the project that they run in: not the caller's
+        if hooks(project) or parameters:  # both write into the project: not into the caller's
             project = copy.deepcopy(project)
+        self._parameters = [parse(project, k, v) for k, v in (parameters or {}).items()]
         self.project = project
         self.diagnostics: list[Diagnostic] = lint(
             project, pass_classes(), default_material_names(project)
@@ -122,6 +127,7 @@ class Renderer:
         if self._session is None:
             start = perf_counter()
             self._session = self._open()
+            self._set_parameters(self._session)
             self._setup_ms = (perf_counter() - start) * 1000
         return self._session
 
@@ -143,6 +149,22 @@ class Renderer:
             self._options,
             progress=self._progress,
         )
+
+    def _set_parameters(self, session: Session) -> None:
+        if not self._parameters or not self.plan.steps:
+            return
+        width, height = self._size
+        rect = Rect(0.0, 0.0, float(width), float(height))
+        frame = FrameContext(session, 0, 0.0, session.world.camera(None), rect)
+        first = self.plan.steps[0].pass_
+        for parameter, values in self._parameters:
+            node = parameter.node
+            where = (node.type or "", node.context or "CURRENT", node.component or "", node.id or 0)
+            try:
+                self.scripts.attributes.set(frame, first, *where, values)
+            except ValueError as problem:
+                message = f"parameter '{parameter.name}' cannot be set: {problem}"
+                raise ProjectError(error("R020", node.location, message)) from None
 
     def render(self, frame: int = 0) -> Frame:
         """Render up to and including ``frame`` (from 0) and return it.

@@ -61,6 +61,9 @@ class SceneBuilder:
         objects = self._objects(scene)
         if not objects:
             return []
+        if scene.has_flag("USE_ADJACENCY"):
+            for item in objects:
+                item.mesh.adjacency = item.mesh.primitive == "TRIANGLES"
         merged = (scene.type or "OctreeUnified") in _MERGED_TYPES
         if merged and not any(o.mesh.buffers for o in objects):
             baked = [transform_mesh(o.mesh, o.matrix) for o in objects]
@@ -224,7 +227,8 @@ class SceneBuilder:
             )
         )
         positions = np.where(bad[:, None], np.float32(0), mesh.positions)
-        return Mesh(mesh.attributes | {"position": positions}, groups, mesh.primitive)
+        attributes = mesh.attributes | {"position": positions}
+        return Mesh(attributes, groups, mesh.primitive, adjacency=mesh.adjacency)
 
 
 def _unitize(objects: list[SceneObject]) -> list[SceneObject]:
@@ -238,6 +242,7 @@ def _unitize(objects: list[SceneObject]) -> list[SceneObject]:
     for item in objects:
         points = (item.mesh.positions[:, :3].astype(np.float64) - centre) * scale
         attributes = item.mesh.attributes | {"position": pad4(points, 1.0)}
-        mesh = Mesh(attributes, item.mesh.groups, item.mesh.primitive)
+        kept = item.mesh
+        mesh = Mesh(attributes, kept.groups, kept.primitive, adjacency=kept.adjacency)
         result.append(SceneObject(item.name, mesh, item.matrix))
     return result

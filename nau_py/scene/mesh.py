@@ -33,6 +33,8 @@ class Mesh:
     buffers: dict[str, str] = field(default_factory=dict)
     """Attributes (and ``index``) that live in GPU buffers, by qualified name; such a mesh has no
     vertices of its own."""
+    adjacency: bool = False
+    """Whether geometry shaders see each triangle's neighbours."""
     version: int = 0
     """Grows when positions change: animated meshes only."""
 
@@ -81,7 +83,7 @@ def transform_mesh(mesh: Mesh, matrix: F64) -> Mesh:
         inverse = np.linalg.inv(linear) if abs(np.linalg.det(linear)) > 1e-30 else linear
         normals = mesh.attributes["normal"][:, :3].astype(np.float64) @ inverse
         attributes["normal"] = pad4(normalized(normals), 0.0)
-    return Mesh(attributes, mesh.groups, mesh.primitive)
+    return Mesh(attributes, mesh.groups, mesh.primitive, adjacency=mesh.adjacency)
 
 
 def normalized(vectors: NDArray[np.floating]) -> F64:
@@ -114,7 +116,7 @@ def merge(meshes: list[Mesh]) -> Mesh:
                 parts.setdefault(group.material, []).append(shifted)
         offset += mesh.vertex_count
     groups = [Group(name, np.concatenate(listed)) for name, listed in parts.items()]
-    return Mesh(attributes, groups, meshes[0].primitive)
+    return Mesh(attributes, groups, meshes[0].primitive, adjacency=meshes[0].adjacency)
 
 
 def triangle_tangents(positions: F32, uv: F32, triangles: U32) -> F32:

@@ -46,14 +46,6 @@ L007 = rule(
     "<valueof uniform='s' type='SCENE' context='S' component='SCALE'/>",
     "<valueof uniform='s' type='RENDERER' context='CURRENT' component='MODEL'/>",
 )
-L005 = rule(
-    "L005",
-    WARNING,
-    "Adjacency is ignored",
-    "This version draws plain triangles; geometry shaders see no neighbours.",
-    "<scene name='S' param='USE_ADJACENCY'>",
-    "<scene name='S'>",
-)
 L006 = rule(
     "L006",
     NOTE,
@@ -245,6 +237,14 @@ for row in (
         "<buffer name='rays'><SIZE value='3200'/></buffer>",
     ),
     (
+        "R020",
+        ERROR,
+        "Parameter cannot be set",
+        "`--set NAME=VALUE` sets what the <interface> of the project offers; both are checked.",
+        "nau-run project.xml --set Aperture=wide",
+        "nau-run project.xml --set Aperture=0.2",
+    ),
+    (
         "T010",
         ERROR,
         "Ray program raised",
@@ -288,14 +288,6 @@ def indirect(facts: Facts) -> Iterator[Diagnostic]:
         if isinstance(node, SceneReferences) and node.drawIndirectBuffer:
             where = node.where("drawIndirectBuffer")
             yield L004.at(where, f"draw commands '{node.drawIndirectBuffer}' are not used")
-
-
-@check
-def geometry_flags(facts: Facts) -> Iterator[Diagnostic]:
-    """Adjacency, which is not built."""
-    for scene in facts.project.assets.scenes:
-        if scene.has_flag("USE_ADJACENCY"):
-            yield L005.at(scene.where("param"), f"scene '{scene.name}': USE_ADJACENCY is ignored")
 
 
 @check
