@@ -14,7 +14,10 @@ HIGHEST = 450
 _RESERVED = ("input", "output")
 """Words that GLSL reserves (4.50 specification, 3.6) and that projects use as names."""
 _VERSION = re.compile(r"^([ \t]*#[ \t]*version[ \t]+)(\d+)", re.MULTILINE)
-_LAYOUT_PARAMETER = re.compile(r"([(,]\s*)layout\s*\([^)]*\)\s*(?=(?:in|out|inout|const|\w+)\s+\w)")
+_LAYOUT_PARAMETER = re.compile(r"([(,]\s*)layout\s*\([^)]*\)\s*(?=\w+\s+\w)")
+_LAYOUT_FUNCTION = re.compile(
+    r"^[ \t]*\w+[ \t]+(?P<name>\w+)[ \t]*\((?P<given>[^{;]*\blayout\b[^{;]*)\)\s*\{", re.MULTILINE
+)
 _INTERFACE = re.compile(
     r"^(?P<head>[ \t]*(?:layout\s*\([^)]*\)\s*)?(?:flat\s+|smooth\s+|noperspective\s+)?"
     r"(?P<way>in|out)[ \t]+)(?P<type>\w+)(?P<gap>[ \t]+)(?P<name>\w+)(?P<rest>[ \t]*[;\[])",
@@ -58,8 +61,27 @@ def _alone(text: str, stage: str, notes: list[str]) -> str:
             text = re.sub(rf"\b{word}\b", renamed(word), text)
             notes.append(f"stage {stage}: the reserved word '{word}' became a name")
     if _LAYOUT_PARAMETER.search(code):
-        text = _LAYOUT_PARAMETER.sub(r"\1", text)
-        notes.append(f"stage {stage}: layout() of a function parameter was left out")
+        text = _without_dead_functions(text, stage, notes)
+        if _LAYOUT_PARAMETER.search(_without_comments(text)):
+            text = _LAYOUT_PARAMETER.sub(r"\1", text)
+            notes.append(f"stage {stage}: layout() of a function parameter was left out")
+    return text
+
+
+def _without_dead_functions(text: str, stage: str, notes: list[str]) -> str:
+    """Functions with layout() parameters that nobody calls, blanked out line for line."""
+    code = _without_comments(text)
+    for match in list(_LAYOUT_FUNCTION.finditer(code)):
+        name = match["name"]
+        if len(re.findall(rf"\b{name}\b", code)) > 1:
+            continue
+        depth, end = 1, match.end()
+        while depth and end < len(code):
+            depth += {"{": 1, "}": -1}.get(code[end], 0)
+            end += 1
+        blank = re.sub(r"[^\n]", " ", text[match.start() : end])
+        text = text[: match.start()] + blank + text[end:]
+        notes.append(f"stage {stage}: the function '{name}', which nobody calls, was left out")
     return text
 
 

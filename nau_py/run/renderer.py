@@ -329,5 +329,5 @@ def _skipped_by_mode(mode: str, index: int) -> str:
 def _lacking(class_: str) -> str:
     """Why a pass class does not run."""
     if class_ == "mesh":
-        return "needs the OpenGL extension GL_NV_mesh_shader, which nau_py does not use"
+        return "is not supported: it needs the OpenGL extension GL_NV_mesh_shader"
     return "is not supported by this version"

@@ -10,6 +10,7 @@ from nau_py.model.scene import Scene
 from nau_py.scene.build import SceneBuilder
 from nau_py.scene.camera import CameraState, camera_state
 from nau_py.scene.events import EventSystem
+from nau_py.scene.frustum import frustum_corners, frustum_mesh
 from nau_py.scene.lights import LightState, light_state
 from nau_py.scene.mapping import MaterialTable
 from nau_py.scene.material import default_material, from_model
@@ -57,6 +58,7 @@ class World:
         self.moves = 0
         """How often anything was moved."""
         self._cameras: dict[str, CameraState] = {}
+        self._frusta: dict[str, SceneObject] = {}
         for camera in project.assets.cameras:
             if camera.name and camera.name not in self._cameras:
                 self._cameras[camera.name] = camera_state(project, camera, camera.name)
@@ -69,8 +71,25 @@ class World:
         self._lights.setdefault(DEFAULT_NAME, light_state(project, [], DEFAULT_NAME))
 
     def objects(self, names: list[str]) -> list[SceneObject]:
-        """The objects of the named scenes, in that order."""
-        return [o for name in names for o in self.scenes.get(name, [])]
+        """The objects of the named scenes, in that order; a camera's name means its frustum."""
+        found = []
+        for name in names:
+            found += self.scenes.get(name, [])
+            if name not in self.scenes and name in self._cameras:
+                found.append(self._frustum(self._cameras[name]))
+        return found
+
+    def _frustum(self, camera: CameraState) -> SceneObject:
+        aspect = self.viewport(camera.viewport).aspect
+        if camera.name not in self._frusta:
+            self._frusta[camera.name] = SceneObject(camera.name, frustum_mesh(camera, aspect))
+        found = self._frusta[camera.name]
+        corners = frustum_corners(camera, aspect)
+        if not np.array_equal(corners, found.mesh.positions):
+            found.mesh.attributes["position"] = corners
+            found.mesh.version += 1
+        found.matrix = inverse(camera.view_matrix())
+        return found
 
     def move(self, name: str, matrix: F64) -> None:
         """Put the objects called ``name`` where ``matrix`` says: object to world, (4, 4).

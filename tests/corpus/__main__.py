@@ -28,10 +28,15 @@ from PIL import Image
 from tests.corpus.conformance import Difference, Request, Result
 
 SUBSTITUTED = "__substituted_model"
+STAND_IN = "models/ntg-bench/bench.obj"
+"""The model in the place of those that the checkout lacks."""
 
 
-def requests(nau: Path, oracle: Path | None, only: str, folder: Path) -> list[Request]:
-    """A request for each picture of the real engine, and one for each other project."""
+def requests(
+    nau: Path, oracle: Path | None, only: str, folder: Path, copies: list[Path]
+) -> list[Request]:
+    """A request for each picture of the real engine, and one for each other project. ``copies``:
+    the checkout, then files that were written into it."""
     made: list[Request] = []
     seen: set[str] = set()
     index = oracle / "index.csv" if oracle else None
@@ -42,27 +47,41 @@ def requests(nau: Path, oracle: Path | None, only: str, folder: Path) -> list[Re
             reference = str(oracle / row["folder"]) if oracle else None
             size = (int(row["width"]), int(row["height"]))
             picture = str(folder / f"{len(made)}.png")
-            made.append(
-                Request(_edited(nau, row, folder), row["pipeline"], size, reference, picture)
-            )
+            project = _edited(nau / row["path"], row["folder"], copies)
+            made.append(Request(project, row["pipeline"], size, reference, picture))
     for path in sorted((nau / "projects").glob("**/*.xml")):
         name = str(path.relative_to(nau))
         if name not in seen and only in name:
-            made.append(Request(str(path), None, None, None, str(folder / f"{len(made)}.png")))
+            picture = str(folder / f"{len(made)}.png")
+            made.append(Request(_edited(path, "", copies), None, None, None, picture))
     return made
 
 
-def _edited(nau: Path, row: dict[str, str], folder: Path) -> str:
-    """The project's file; where the reference has another model, a copy beside it with that."""
-    path = nau / row["path"]
-    if SUBSTITUTED not in row["folder"]:
-        return str(path)
+def _edited(path: Path, reference: str, made: list[Path]) -> str:
+    """The project's file; where models are missing, a copy beside it with another one."""
+    import nau_py
+    from nau_py.errors import NauError
+
     text = path.read_text(encoding="utf-8", errors="replace")
-    text = text.replace('<scene name="MainScene" param="SWAP_YZ">', '<scene name="MainScene">')
-    text = text.replace("../../models/SanMiguel/san-miguel.nbo", "../../models/ntg-bench/bench.obj")
-    copy = path.with_name(f"{path.stem}{SUBSTITUTED}.xml.tmp")
-    copy = copy.with_suffix("")
-    copy.write_text(text)
+    changed = text
+    if SUBSTITUTED in reference:
+        changed = changed.replace(
+            '<scene name="MainScene" param="SWAP_YZ">', '<scene name="MainScene">'
+        )
+    try:
+        found = nau_py.lint(nau_py.load(path))
+    except NauError:
+        return str(path)
+    missing = [d.message for d in found if d.rule == "F001" and "the model file" in d.message]
+    for message in missing:
+        name = message.split("the model file '")[1].split("'")[0]
+        up = "../" * (len(path.relative_to(made[0]).parts) - 1)
+        changed = changed.replace(name, up + STAND_IN)
+    if changed == text:
+        return str(path)
+    copy = path.with_name(f"{path.stem}{SUBSTITUTED}.xml")
+    copy.write_text(changed)
+    made.append(copy)
     return str(copy)
 
 
@@ -146,12 +165,15 @@ def main() -> None:
     parser.add_argument("--timeout", type=float, default=120)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        asked = requests(options.nau, options.oracle, options.only, Path(folder))
+        copies = [options.nau]
+        asked = requests(options.nau, options.oracle, options.only, Path(folder), copies)
         with ThreadPoolExecutor(options.jobs) as pool:
             results = []
             for request, result in zip(asked, pool.map(lambda r: work(r, options.timeout), asked)):
                 results.append(result)
                 print(" | ".join(_cells(options.nau, request, result))[:230], flush=True)
+        for copy in copies[1:]:
+            copy.unlink()
         summary = Counter(r.verdict for r in results)
         said = ", ".join(f"{n} {verdict}" for verdict, n in summary.most_common())
         print(f"{len(results)} pipelines: {said}")
@@ -170,7 +192,9 @@ def main() -> None:
             head = "".join(f"<th>{h}</th>" for h in [*HEAD, "real, ours, difference x 8"])
             options.out.write_text(
                 "<!doctype html><meta charset=utf-8><title>Conformance</title><style>body{font:13px "
-                "sans-serif}td{border-top:1px solid #ccc;vertical-align:top;padding:4px}</style>"
+                "sans-serif}td{border-top:1px solid #ccc;vertical-align:top;padding:4px;max-width:20em;"
+                "overflow-wrap:anywhere}td:last-child{max-width:none;white-space:nowrap}"
+                "img{height:110px;margin-right:4px}</style>"
                 f"<h1>Nau's own projects</h1><p>{html.escape(said)}</p><table><tr>{head}</tr>{body}</table>"
             )
 

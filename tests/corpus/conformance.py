@@ -24,15 +24,13 @@ FRAME = 2
 
 @dataclass
 class Request:
-    """A pipeline to render. ``reference``: folder of the real engine's picture, if there is one;
-    ``edits``: (file relative to the checkout, old, new) as the reference was made with."""
+    """A pipeline to render. ``reference``: folder of the real engine's picture, if there is one."""
 
     project: str
     pipeline: str | None
     size: tuple[int, int] | None
     reference: str | None
     picture: str
-    edits: list[tuple[str, str, str]] = field(default_factory=list)
 
 
 @dataclass

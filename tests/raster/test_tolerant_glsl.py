@@ -37,6 +37,16 @@ CASES = {
         FRAGMENT.format(330, "const vec2 k[2] = {vec2(0), vec2(1)};\n", "k[1].xyxy"),
         "#version 330 became 420",
     ),
+    "a dead function with layout parameters": (
+        VERTEX.format("", ""),
+        FRAGMENT.format(
+            430,
+            "uint f(layout(r32ui) coherent uimage2D g, vec2 p)\n{ if (p.x > 0) { return 1; }\n"
+            "return imageAtomicAdd(g, ivec2(0), 1); }\n",
+            "vec4(1)",
+        ),
+        "the function 'f', which nobody calls, was left out",
+    ),
     "layout of a parameter": (
         VERTEX.format("", ""),
         FRAGMENT.format(
