@@ -136,6 +136,7 @@ def _cells(nau: Path, request: Request, result: Result) -> list[str]:
         name = str(Path(request.project).relative_to(nau / "projects"))
     except ValueError:
         name = request.project
+    name = name.replace(f"{SUBSTITUTED}.xml", ".xml, another model")
     worst = max(result.differences, key=lambda d: (not d.good, d.mean), default=None)
     picture = result.differences[0] if result.differences else None
     return [
@@ -147,10 +148,28 @@ def _cells(nau: Path, request: Request, result: Result) -> list[str]:
         f"{worst.name}: {worst.mean:.2f} / {worst.high:.0f}"
         if worst and worst is not picture
         else "",
-        result.message or "; ".join(result.missing_targets),
+        result.message.replace("\n", " ").replace(f"{nau}/", "")[:240],
     ]
 
 
+INTRODUCTION = """\
+# Conformance
+
+Nau3D's own projects (the public repository Nau3D/nau), each pipeline that the real engine rendered and
+the default pipeline of each other project: {said}. *Equal* means a mean absolute difference of at most
+1.5/255 and a 99th percentile of at most 8/255, in the picture and in every render target that the real
+engine left; the columns give mean / 99th percentile. Where a model is in no checkout, another one
+stands in, and there is no reference. Made by
+
+```sh
+python -m tests.corpus --nau CHECKOUT --oracle DIR --out report.html --markdown docs/conformance.md
+```
+
+What does not run says why. Ray programs as PTX run where a Python file of the same name stands beside
+them ([programs](programs.md)). The profiler's picture differs by its text: the real one writes more
+lines, in a font of its own, of a clock that stood still.
+
+"""
 HEAD = ["project", "pipeline", "verdict", "ms a frame", "picture", "worst target", "what is said"]
 
 
@@ -181,7 +200,7 @@ def main() -> None:
         if options.markdown:
             table = ["| " + " | ".join(HEAD) + " |", "|" + "---|" * len(HEAD)]
             table += ["| " + " | ".join(c.replace("|", "\\|") for c in row) + " |" for row in rows]
-            options.markdown.write_text(f"{said}\n\n" + "\n".join(table) + "\n")
+            options.markdown.write_text(INTRODUCTION.format(said=said) + "\n".join(table) + "\n")
         if options.out:
             body = "".join(
                 "<tr>"
@@ -192,8 +211,9 @@ def main() -> None:
             head = "".join(f"<th>{h}</th>" for h in [*HEAD, "real, ours, difference x 8"])
             options.out.write_text(
                 "<!doctype html><meta charset=utf-8><title>Conformance</title><style>body{font:13px "
-                "sans-serif}td{border-top:1px solid #ccc;vertical-align:top;padding:4px;max-width:20em;"
-                "overflow-wrap:anywhere}td:last-child{max-width:none;white-space:nowrap}"
+                "sans-serif}td{border-top:1px solid #ccc;vertical-align:top;padding:4px;min-width:5em;"
+                "max-width:24em;overflow-wrap:anywhere}td:nth-child(7){min-width:20em}"
+                "td:last-child{max-width:none;white-space:nowrap}"
                 "img{height:110px;margin-right:4px}</style>"
                 f"<h1>Nau's own projects</h1><p>{html.escape(said)}</p><table><tr>{head}</tr>{body}</table>"
             )

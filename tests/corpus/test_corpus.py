@@ -85,30 +85,14 @@ def pictures() -> list[dict[str, str]]:
     return list(csv.DictReader(index.read_text().splitlines())) if index.exists() else []
 
 
-EXACT = [
-    "atomics__atomics",
-    "barrel__textureModel",
-    "lighting__pointLight",
-    "cubemap__cubemap3dsteapot",
-    "geometry__geometry",
-    "simple__simple",
-    "toon__toonMixed",
-    "toon__toonPerPixel",
-    "materials__ivory",
-    "materials__hatching",
-    "lighting__shaderModels",
-    "lighting__diffusePerVertex",
-    "lighting__diffuseAmbientPerPixel",
-    "materials__brushedSteel",
-    "computeShader__computeShaderBufferTest",
-    "imageProcessing__imageProcStandard",
-]
-"""Projects of this version's pass classes whose picture must equal the real engine's."""
+INEXACT = ["profiler__profilertest", "ambient_occlusion_I__ambientOcc__substituted_model"]
+"""The profiler's text shows times; the other one has a model that the checkout lacks (the conformance
+command puts it in)."""
 
 
 @pytest.mark.skipif(not pictures(), reason="NAU_ORACLE is not set")
 @pytest.mark.parametrize(
-    "row", [r for r in pictures() if r["folder"] in EXACT], ids=lambda r: r["folder"]
+    "row", [r for r in pictures() if r["folder"] not in INEXACT], ids=lambda r: r["folder"]
 )
 def test_pictures_equal_the_real_engines(row: dict[str, str]) -> None:
     """Frame 2 within 1.5/255 in the mean and 8/255 at the 99th percentile."""
