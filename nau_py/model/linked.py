@@ -38,6 +38,9 @@ class Project:
     problems: list[Problem] = field(default_factory=list)
     sources: dict[str, str] = field(default_factory=dict)
     """Text of every file read, by the name used in locations."""
+    _defaults: dict[tuple[str, str], tuple[Scalar, ...]] = field(
+        default_factory=dict, repr=False, compare=False
+    )
 
     @property
     def name(self) -> str:
@@ -89,14 +92,19 @@ class Project:
 
         Constants are resolved, a VEC4 written with three components gets a fourth of 0.
         """
-        attribute = self.registry[type_].attributes[name]
         parts = node.get(name)
-        return self.default(type_, name) if parts is None else self._resolved(attribute, parts)
+        if parts is None:
+            return self.default(type_, name)
+        return self._resolved(self.registry[type_].attributes[name], parts)
 
     def default(self, type_: str, name: str) -> tuple[Scalar, ...]:
         """The default of an attribute; a user attribute's may name a constant."""
-        attribute = self.registry[type_].attributes[name]
-        return self._resolved(attribute, attribute.default) if attribute.default else ()
+        found = self._defaults.get((type_, name))
+        if found is None:
+            attribute = self.registry[type_].attributes[name]
+            found = self._resolved(attribute, attribute.default) if attribute.default else ()
+            self._defaults[type_, name] = found
+        return found
 
     def _resolved(self, attribute: Attribute, parts: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
         if not attribute.type.is_number:

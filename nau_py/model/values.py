@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from enum import StrEnum
+from functools import cached_property
 
 Scalar = bool | int | float | str
 
@@ -35,31 +36,31 @@ class DataType(StrEnum):
     MAT4 = "MAT4"
     INTARRAY = "INTARRAY"
 
-    @property
+    @cached_property
     def components(self) -> int:
         """How many scalars one value holds."""
         if self in (DataType.MAT3, DataType.MAT4):
             return int(self.value[-1]) ** 2
         return int(self.value[-1]) if self.value[-1].isdigit() else 1
 
-    @property
+    @cached_property
     def required_components(self) -> int:
         """A VEC4 may leave out its last component, which is then 0."""
         return 3 if self is DataType.VEC4 else self.components
 
-    @property
+    @cached_property
     def is_integer(self) -> bool:
         return self.value.startswith(("INT", "IVEC", "UINT", "UIVEC"))
 
-    @property
+    @cached_property
     def is_boolean(self) -> bool:
         return self.value.startswith(("BOOL", "BVEC"))
 
-    @property
+    @cached_property
     def is_number(self) -> bool:
         return self.is_integer or self.value.startswith(("FLOAT", "VEC", "DOUBLE", "DVEC"))
 
-    @property
+    @cached_property
     def in_file(self) -> bool:
         """Whether a project file can write a value of this type."""
         return self not in (DataType.MAT3, DataType.MAT4, DataType.INTARRAY)
