@@ -1,0 +1,72 @@
+"""Step 10: mirrors that scatter: directions about the mirror direction."""
+
+import numpy as np
+
+
+def dot(a, b):
+    return (a * b).sum(axis=-1)
+
+
+def camera(launch):
+    """Ray generation: each sample has its own cell of a grid over the pixel, and a place in it."""
+    side = round(launch.samples**0.5)
+    x = launch.x + (launch.sample % side + launch.random(0)) / side
+    y = launch.y + (launch.sample // side % side + launch.random(1)) / side
+    origin, direction = launch.camera_rays(x, y)
+    return launch.trace("Phong", origin, direction)
+
+
+def base(hits):
+    """The colour of the surface: DIFFUSE times the texture of unit 0."""
+    return hits.color("DIFFUSE") * hits.texture(0)[:, :3]
+
+
+def to_sun(hits):
+    """Unit vector towards the sun."""
+    direction = -hits.lights[0].vector("DIRECTION")
+    return direction / np.sqrt(dot(direction, direction))
+
+
+def shade(hits):
+    """Closest hit: diffuse light with a shadow ray, and a little from everywhere."""
+    light = to_sun(hits)
+    cosine = np.maximum(dot(hits.facing_normal, light), 0)
+    seen = hits.trace("Shadow", light, kind="shadow", where=cosine > 0)[:, 0]
+    return base(hits) * (0.3 + 0.9 * cosine * seen)[:, None]
+
+
+def reflect(d, n):
+    return d - 2 * dot(d, n)[:, None] * n
+
+
+def frame(axis):
+    """Two unit vectors across each of ``axis``, (n, 3)."""
+    helper = np.where(np.abs(axis[:, :1]) < 0.9, np.float32([1, 0, 0]), np.float32([0, 1, 0]))
+    side = np.cross(axis, helper)
+    side = side / np.sqrt(dot(side, side))[:, None]
+    return side.astype(np.float32), np.cross(axis, side).astype(np.float32)
+
+
+def glossy(hits):
+    """Closest hit of brushed metal: a ray about the mirror direction, by Phong's lobe."""
+    axis = reflect(hits.direction, hits.facing_normal)
+    exponent = float(hits.variables["glossiness"][0])
+    cosine = hits.random(4) ** (1 / (exponent + 1))
+    sine, angle = np.sqrt(1 - cosine**2), 2 * np.pi * hits.random(5)
+    s, t = frame(axis)
+    lobe = cosine[:, None] * axis
+    lobe = lobe + (sine * np.cos(angle))[:, None] * s + (sine * np.sin(angle))[:, None] * t
+    above = dot(lobe, hits.facing_normal) > 0
+    seen = hits.trace("Phong", lobe.astype(np.float32), kind="reflection", where=above)
+    return hits.color("SPECULAR") * seen[:, :3]
+
+
+def sky(rays):
+    """Miss: a pale sky, brighter at the horizon."""
+    up = np.clip(rays.direction[:, 1:2], 0, 1)
+    return np.float32([0.85, 0.9, 0.95]) * (1 - up) + np.float32([0.35, 0.6, 0.95]) * up
+
+
+def lit(rays):
+    """Miss of a shadow ray: nothing is in the way."""
+    return np.float32([1, 1, 1])
