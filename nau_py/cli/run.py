@@ -56,7 +56,9 @@ def run(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="OUT.png, .exr or .npy; %04d numbers.")
     ] = None,
-    pipeline: Annotated[str | None, typer.Option(help="Pipeline; default the project's.")] = None,
+    pipeline: Annotated[
+        str | None, typer.Option(help="Only this pipeline; default the project's.")
+    ] = None,
     size: Annotated[str | None, typer.Option(help="Window, WxH pixels.")] = None,
     frames: Annotated[str, typer.Option(help="Frames A:B, both included.")] = "0",
     time_step: Annotated[float, typer.Option(help="Seconds from frame to frame.")] = 0.02,
@@ -140,7 +142,7 @@ def _render(
     last: int,
     show_mask: bool,
 ) -> list[dict[str, Any]]:
-    """Render frames ``first`` to ``last``, writing what is asked for."""
+    """Render frames ``first`` to ``last``, or to where the pipelines end; write what is asked."""
     from nau_py.run.output import write_image, write_targets
     from nau_py.run.overlay import mask_overlay
 
@@ -152,10 +154,12 @@ def _render(
         reports.append(frame.report)
         if output is not None and _numbered(output):
             write_image(output.with_name(output.name % index), frame.image)
-        elif output is not None and index == last:
-            write_image(output, frame.image)
-        if targets is not None and index == last:
-            write_targets(targets, frame.targets)
+        if renderer.ended:
+            break
+    if output is not None and not _numbered(output):
+        write_image(output, frame.image)
+    if targets is not None:
+        write_targets(targets, frame.targets)
     return reports
 
 

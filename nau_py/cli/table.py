@@ -16,7 +16,7 @@ def print_table(report: dict[str, Any], explain: bool) -> None:
     """Print the last frame's passes: status, time, pixels, rays by kind, rays avoided."""
     console = Console(width=None if Console().is_terminal else 140)
     frame = report["frames"][-1]
-    title = f"{report['project']}: {report['pipeline']}, frame {frame['index']}"
+    title = f"{report['project']}: {frame['pipeline']}, frame {frame['index']}"
     table = Table(title=title, title_justify="left")
     table.add_column("pass")
     table.add_column("class")
@@ -53,6 +53,8 @@ def print_table(report: dict[str, Any], explain: bool) -> None:
         "",
     )
     console.print(table)
+    if "ended" in report:
+        console.print(f"no frame after {frame['index']}: {report['ended']}")
     if report["nonfinite"]:
         console.print(f"{report['nonfinite']:,} samples were not finite")
     for item in frame["passes"]:

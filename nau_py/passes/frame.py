@@ -79,6 +79,12 @@ class Session:
     first_frame: int = 0
     """The frame that counts as 0: scripts may set FRAME_COUNT."""
 
+    def turn_to(self, pipeline: str, index: int) -> None:
+        """Go on with another pipeline, of which frame ``index`` is number 0."""
+        self.pipeline, self.first_frame = pipeline, index
+        self.materials.clear()  # both are kept by the names of passes, unique in a pipeline only
+        self.tracers.clear()
+
     def pass_materials(self, pass_: Pass) -> PassMaterials:
         """The material mapping of a pass, made once."""
         key = pass_.name or ""

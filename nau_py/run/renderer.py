@@ -17,6 +17,7 @@ from nau_py.graph.plan import Plan, Step, make_plan
 from nau_py.graph.resource import WINDOW
 from nau_py.lint.engine import lint
 from nau_py.model.linked import Project
+from nau_py.model.pipeline import Pipeline
 from nau_py.passes import pass_classes
 from nau_py.passes.frame import (
     FrameContext,
@@ -26,10 +27,10 @@ from nau_py.passes.frame import (
     Session,
     no_progress,
 )
-from nau_py.run.choose import choose_pipeline
 from nau_py.run.parameters import parse
 from nau_py.run.report import machine_facts, make_report
 from nau_py.run.scripts import MAX_REPEATS, Scripts, hooks
+from nau_py.run.turns import Turns
 from nau_py.scene.names import default_material_names
 from nau_py.scene.viewport import Rect
 from nau_py.scene.world import World
@@ -55,11 +56,12 @@ class Frame:
 
 
 class Renderer:
-    """Renders frames of one pipeline.
+    """Renders frames of a pipeline, or of those that take turns in Nau's mode ``RUN_ALL``.
 
-    ``size`` overrides the window (width, height), pixels. ``keep_targets`` runs every pass that
-    writes something, so that all targets can be read. ``parameters``: values, as text, of what the
-    project's interface offers, by name. Raises
+    ``pipeline``: the one to draw; without it the project's default and, once that ends, those
+    after it. ``size`` overrides the window (width, height), pixels. ``keep_targets`` runs every
+    pass that writes something, so that all targets can be read. ``parameters``: values, as text,
+    of what the project's interface offers, by name. Raises
     :class:`~nau_py.errors.ProjectError` for a project with lint errors,
     :class:`~nau_py.errors.DeviceError` without OpenGL.
     """
@@ -86,9 +88,9 @@ class Renderer:
         errors = [d for d in self.diagnostics if d.severity is Severity.ERROR]
         if errors:
             raise ProjectError(errors)
-        self.pipeline = choose_pipeline(project, pipeline)
-        self.plan: Plan = make_plan(project, self.pipeline, pass_classes(), everything=keep_targets)
-        self._refuse_unsupported()
+        self._turns = Turns(project, pipeline)
+        self._everything = keep_targets
+        self._plan_turn()
         self.time_step = time_step
         self._size = size or project.size
         self._options = options or RunOptions()
@@ -97,6 +99,22 @@ class Renderer:
         self._scripts: Scripts | None = None
         self._next = 0
         self._setup_ms = 0.0
+
+    @property
+    def pipeline(self) -> Pipeline:
+        """The pipeline that draws."""
+        return self._turns.pipeline
+
+    @property
+    def ended(self) -> bool:
+        """Whether the last pipeline has ended: further frames draw nothing."""
+        return self._turns.ended
+
+    def _plan_turn(self) -> None:
+        self.plan: Plan = make_plan(
+            self.project, self.pipeline, pass_classes(), everything=self._everything
+        )
+        self._refuse_unsupported()
 
     def _refuse_unsupported(self) -> None:
         known = pass_classes()
@@ -193,6 +211,8 @@ class Renderer:
             [(frame, ms, records)],
             self._setup_ms,
         )
+        if self.ended:
+            report["ended"] = self._turns.why
         return Frame(frame, image, targets, report)
 
     def move(self, name: str, matrix: NDArray[Any]) -> None:
@@ -210,34 +230,50 @@ class Renderer:
         if self._scripts is not None:
             self._scripts.attributes.restore()
         self._session, self._scripts, self._next = None, None, 0
+        self._turns.restart()
+        self._plan_turn()
 
     def _step(self, index: int) -> list[PassRecord]:
         session = self.session
+        if self._turns.ended:
+            return self._left_out(self._turns.why)
+        if self._turns.advance():
+            self._plan_turn()
+            session.turn_to(self.pipeline.name or "", index)
         session.resources.clear_buffers_by_frame()
         width, height = self._size
-        camera = session.world.camera(None)
         timer = index * self.time_step * 1000.0
         session.world.events.frame(index * self.time_step)
         context = FrameContext(
             session,
             index - session.first_frame,
             timer,
-            camera,
+            session.world.camera(None),
             Rect(0.0, 0.0, float(width), float(height)),
         )
-        scripts = self.scripts
+        records = self._draw(context)
+        if self._turns.is_last_frame(context.index):
+            self._turns.end(f"it has drawn its {self.pipeline.frameCount} frames")
+        if self._turns.over and self.plan.steps:
+            self.scripts.call(self.pipeline.postScript, context, self.plan.steps[0].pass_)
+        self._note(self.scripts.diagnostics)
+        return records
+
+    def _draw(self, context: FrameContext) -> list[PassRecord]:
+        scripts, pipeline = self.scripts, self.pipeline
         first = self.plan.steps[0].pass_ if self.plan.steps else None
         if first is not None and context.index == 0:
-            scripts.call(self.pipeline.preScript, context, first)
-        if first is not None and not scripts.test(self.pipeline.testScript, context, first):
-            reason = f"the pipeline's test '{self.pipeline.testScript.script}' says no"  # type: ignore[union-attr]
-            return [
-                PassRecord(s.name, s.pass_.pass_class, "left_out", reason) for s in self.plan.steps
-            ]
+            scripts.call(pipeline.preScript, context, first)
+        if first is not None and not scripts.test(pipeline.testScript, context, first):
+            said = f"test '{pipeline.testScript.script}' says no"  # type: ignore[union-attr]
+            self._turns.end(f"its {said}")
+            return self._left_out(f"the pipeline's {said}")
         for step in self.plan.steps:
             context.records.append(self._run(step, context))
-        self._note(scripts.diagnostics)
         return context.records
+
+    def _left_out(self, reason: str) -> list[PassRecord]:
+        return [PassRecord(s.name, s.pass_.pass_class, "left_out", reason) for s in self.plan.steps]
 
     def _run(self, step: Step, context: FrameContext) -> PassRecord:
         record = PassRecord(step.name, step.pass_.pass_class)

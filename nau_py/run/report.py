@@ -74,7 +74,12 @@ def make_report(
         "machine": machine,
         "setup_ms": round(setup_ms, 3),
         "frames": [
-            {"index": index, "ms": round(ms, 3), "passes": [pass_data(r) for r in records]}
+            {
+                "index": index,
+                "pipeline": pipeline,
+                "ms": round(ms, 3),
+                "passes": [pass_data(r) for r in records],
+            }
             for index, ms, records in frames
         ],
         "totals": {
@@ -91,17 +96,22 @@ def make_report(
 def joined(reports: list[dict[str, Any]]) -> dict[str, Any]:
     """One report of several single-frame ones of the same run."""
     first = reports[0]
+    ended = {k: v for k, v in reports[-1].items() if k == "ended"}
     rays: dict[str, int] = {}
     for report in reports:
         for kind, count in report["totals"]["rays"].items():
             rays[kind] = rays.get(kind, 0) + count
-    return first | {
-        "frames": [frame for report in reports for frame in report["frames"]],
-        "totals": {
-            "ms": round(sum(r["totals"]["ms"] for r in reports), 3),
-            "rays": rays,
-            "rays_avoided": sum(r["totals"]["rays_avoided"] for r in reports),
-        },
-        "warnings": list(dict.fromkeys(w for r in reports for w in r["warnings"])),
-        "nonfinite": sum(r["nonfinite"] for r in reports),
-    }
+    return (
+        first
+        | ended
+        | {
+            "frames": [frame for report in reports for frame in report["frames"]],
+            "totals": {
+                "ms": round(sum(r["totals"]["ms"] for r in reports), 3),
+                "rays": rays,
+                "rays_avoided": sum(r["totals"]["rays_avoided"] for r in reports),
+            },
+            "warnings": list(dict.fromkeys(w for r in reports for w in r["warnings"])),
+            "nonfinite": sum(r["nonfinite"] for r in reports),
+        }
+    )

@@ -433,6 +433,24 @@ def test_a_missing_library_is_one_error(folder: Folder) -> None:
     assert ["lib.mlib" in d.message for d in found] == [True]
 
 
+def test_a_pipeline_without_an_end(folder: Folder) -> None:
+    """In mode RUN_ALL only: the last one and one with a frameCount are fine."""
+    two = (
+        '<project name="P"><assets/><pipelines{mode}><pipeline name="A" {count}>{quad}</pipeline>'
+        '<pipeline name="B">{quad}</pipeline></pipelines></project>'
+    )
+    quad = '<pass name="p" class="quad"/>'
+    found = {}
+    for mode in ("", ' mode="RUN_ALL"'):
+        for count in ("", 'frameCount="3"'):
+            folder.write("project.xml", two.format(mode=mode, count=count, quad=quad))
+            lines = [d.message for d in nau_py.lint(folder.load()) if d.rule == "L006"]
+            found[mode != "", count != ""] = lines
+    message = "has neither frameCount nor testScript, so in mode RUN_ALL 'B' has no turn"
+    assert found.pop((True, False)) == [f"pipeline 'A' {message}"]
+    assert list(found.values()) == [[], [], []]
+
+
 def test_every_rule_explains_itself() -> None:
     families()
     for rule in RULES.values():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 from nau_py.diagnostic import Diagnostic
 from nau_py.lint.rule import ERROR, NOTE, WARNING, Facts, check, rule
@@ -49,10 +50,11 @@ L007 = rule(
 L006 = rule(
     "L006",
     NOTE,
-    "One pipeline a run",
-    "Nau's mode RUN_ALL draws the pipelines in turn; nau-run draws the one that it is given.",
-    "<pipelines mode='RUN_ALL'>",
-    "nau-run project.xml --pipeline NAME",
+    "Pipeline without an end",
+    "In mode RUN_ALL a pipeline with neither frameCount nor testScript is drawn for ever; those "
+    "after it have no turn.",
+    "<pipelines mode='RUN_ALL'><pipeline name='A'/><pipeline name='B'/>",
+    "<pipelines mode='RUN_ALL'><pipeline name='A' frameCount='100'/><pipeline name='B'/>",
 )
 L002 = rule(
     "L002",
@@ -291,13 +293,18 @@ def indirect(facts: Facts) -> Iterator[Diagnostic]:
 
 
 @check
-def every_pipeline(facts: Facts) -> Iterator[Diagnostic]:
-    """Running all pipelines in turn, which one run does not do."""
+def turns(facts: Facts) -> Iterator[Diagnostic]:
+    """Pipelines that never let the next one have its turn."""
     pipelines = facts.project.file.pipelines
-    if pipelines is not None and pipelines.mode == "RUN_ALL":
-        yield L006.at(
-            pipelines.where("mode"), "mode RUN_ALL: a run draws one pipeline; name it by --pipeline"
-        )
+    if pipelines is None or pipelines.mode != "RUN_ALL":
+        return
+    for pipeline, after in pairwise(pipelines.pipelines):
+        if not pipeline.frameCount and pipeline.testScript is None:
+            yield L006.at(
+                pipeline.location,
+                f"pipeline '{pipeline.name}' has neither frameCount nor testScript, so in mode "
+                f"RUN_ALL '{after.name}' has no turn",
+            )
 
 
 @check
