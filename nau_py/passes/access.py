@@ -70,6 +70,14 @@ def add_maps(access: Access, project: Project, pass_: Pass) -> None:
         add_material(access, project, map_.toLibrary or DEFAULT_LIBRARY, map_.toMaterial or "")
 
 
+def add_commands(access: Access, pass_: Pass) -> None:
+    """The buffer of indirect draw commands, in which drawing writes the count of indices."""
+    if pass_.scenes is not None and pass_.scenes.drawIndirectBuffer:
+        resource = Resource("buffer", pass_.scenes.drawIndirectBuffer)
+        access.add_read(resource)
+        access.add_write(resource)
+
+
 def add_process(access: Access, pass_: Pass) -> None:
     """What pre- and post-process items read and write."""
     for item in [*pass_.preProcess, *pass_.postProcess]:

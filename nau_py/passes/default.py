@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
-from nau_py.passes.access import add_maps, add_process, add_target
+from nau_py.passes.access import add_commands, add_maps, add_process, add_target
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord
@@ -19,6 +19,7 @@ class DefaultClass:
     def access(self, project: Project, pass_: Pass) -> Access:
         access = Access()
         add_maps(access, project, pass_)
+        add_commands(access, pass_)
         add_process(access, pass_)
         add_target(access, project, pass_, clears=True)
         return access

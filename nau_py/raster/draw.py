@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from nau_py.diagnostic import error
 from nau_py.raster import gl
 from nau_py.raster.gl import GL
 from nau_py.raster.programs import Program
@@ -116,7 +118,48 @@ def set_uniforms(program: Program, context: DrawContext) -> None:
     context.resources.blocks.bind()
 
 
-def _draw_mesh(item: DrawItem, program: Program, resources: Resources, instances: int) -> None:
+@dataclass(slots=True)
+class _Command:
+    """What a draw command of OpenGL holds; its count never reaches past what there is."""
+
+    count: int
+    instances: int
+    first: int = 0
+    base_vertex: int = 0
+    base_instance: int = 0
+
+
+def _command(context: DrawContext, count: int, indexed: bool) -> _Command:
+    """How to draw ``count`` vertices: as the pass says, or its buffer of draw commands.
+
+    As in Nau the count is written into the buffer before each draw (nau-format.md, 11.6). The
+    other values are read back and not left to the GPU: all groups of a mesh share one buffer of
+    indices here, so ``first`` has to be moved.
+    """
+    if context.indirect is None:
+        return _Command(count, max(context.instances, 1))
+    buffer = context.resources.buffer(context.indirect)
+    size = 20 if indexed else 16
+    if buffer is None or buffer.size < size:
+        held = buffer.size if buffer is not None else 0
+        node = context.pass_.scenes or context.pass_
+        context.resources.diagnostics.append(
+            error(
+                "B002",
+                node.where("drawIndirectBuffer"),
+                f"pass '{context.pass_.name}': buffer '{context.indirect}' holds {held} bytes; a "
+                f"draw command takes {size}",
+            )
+        )
+        return _Command(0, 0)
+    buffer.write(count.to_bytes(4, "little"))
+    words = struct.unpack("<4xIIiI" if indexed else "<4xIII", buffer.read(size))
+    left = max(count - words[1], 0)
+    return _Command(left, *words) if indexed else _Command(left, words[0], words[1], 0, words[2])
+
+
+def _draw_mesh(item: DrawItem, program: Program, context: DrawContext) -> None:
+    resources = context.resources
     array = resources.geometry.vertex_array(item.mesh, program)
     gpu = resources.geometry.upload(item.mesh)
     mode = _MODES["TRIANGLES_ADJACENCY" if item.mesh.adjacency else item.mesh.primitive]
@@ -124,21 +167,34 @@ def _draw_mesh(item: DrawItem, program: Program, resources: Resources, instances
         points = item.mesh.groups[item.group].indices.shape[1]
         mode = GL.GL_PATCHES
         GL.glPatchParameteri(GL.GL_PATCH_VERTICES, points)
+    first = gpu.first[item.group]
+    c = _command(context, gpu.count[item.group], indexed=True)
     gl.draw_elements(
-        program.mgl.glo, array, mode, gpu.count[item.group], gpu.first[item.group], instances
+        program.mgl.glo,
+        array,
+        mode,
+        c.count,
+        first + c.first,
+        c.instances,
+        c.base_vertex,
+        c.base_instance,
     )
 
 
-def _draw_buffers(mesh: Mesh, program: Program, resources: Resources, instances: int) -> None:
+def _draw_buffers(mesh: Mesh, program: Program, context: DrawContext) -> None:
     """Geometry of GPU buffers: as many vertices as ``position`` holds, or as there are indices."""
+    resources = context.resources
     found = {name: resources.buffer(place) for name, place in mesh.buffers.items()}
     buffers = {name: buffer for name, buffer in found.items() if buffer is not None}
     array = resources.geometry.buffer_array(mesh, program, {n: b.glo for n, b in buffers.items()})
     mode = _MODES[mesh.primitive]
     if "index" in buffers:
-        gl.draw_elements(program.mgl.glo, array, mode, buffers["index"].size // 4, 0, instances)
+        c = _command(context, buffers["index"].size // 4, indexed=True)
+        base = (c.base_vertex, c.base_instance)
+        gl.draw_elements(program.mgl.glo, array, mode, c.count, c.first, c.instances, *base)
     elif "position" in buffers:
-        gl.draw_arrays(program.mgl.glo, array, mode, buffers["position"].size // 16, instances)
+        c = _command(context, buffers["position"].size // 16, indexed=False)
+        gl.draw_arrays(program.mgl.glo, array, mode, c.count, c.instances, c.first, c.base_instance)
 
 
 def draw(items: list[DrawItem], context: DrawContext) -> None:
@@ -159,11 +215,10 @@ def draw(items: list[DrawItem], context: DrawContext) -> None:
         discard = not program.has_fragment
         if discard:
             GL.glEnable(GL.GL_RASTERIZER_DISCARD)
-        instances = max(context.instances, 1)
         if item.mesh.buffers:
-            _draw_buffers(item.mesh, program, resources, instances)
+            _draw_buffers(item.mesh, program, context)
         else:
-            _draw_mesh(item, program, resources, instances)
+            _draw_mesh(item, program, context)
         if discard:
             GL.glDisable(GL.GL_RASTERIZER_DISCARD)
     if previous is not None:

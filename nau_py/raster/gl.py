@@ -236,20 +236,40 @@ def create_vertex_array(inputs: list[tuple[int, int]], indices: int) -> int:
 
 
 def draw_elements(
-    program: int, array: int, mode: int, count: int, first: int, instances: int
+    program: int,
+    array: int,
+    mode: int,
+    count: int,
+    first: int,
+    instances: int,
+    base_vertex: int = 0,
+    base_instance: int = 0,
 ) -> None:
     """Draw ``count`` indices from ``first``, ``instances`` times."""
     GL.glUseProgram(program)
     GL.glBindVertexArray(array)
     offset = ctypes.c_void_p(first * 4)
-    GL.glDrawElementsInstanced(mode, count, GL.GL_UNSIGNED_INT, offset, instances)
+    if base_vertex or base_instance:
+        GL.glDrawElementsInstancedBaseVertexBaseInstance(
+            mode, count, GL.GL_UNSIGNED_INT, offset, instances, base_vertex, base_instance
+        )
+    else:
+        GL.glDrawElementsInstanced(mode, count, GL.GL_UNSIGNED_INT, offset, instances)
 
 
-def draw_arrays(program: int, array: int, mode: int, count: int, instances: int) -> None:
-    """Draw ``count`` vertices in their order, ``instances`` times."""
+def draw_arrays(
+    program: int,
+    array: int,
+    mode: int,
+    count: int,
+    instances: int,
+    first: int = 0,
+    base_instance: int = 0,
+) -> None:
+    """Draw ``count`` vertices from ``first`` in their order, ``instances`` times."""
     GL.glUseProgram(program)
     GL.glBindVertexArray(array)
-    GL.glDrawArraysInstanced(mode, 0, count, instances)
+    GL.glDrawArraysInstancedBaseInstance(mode, first, count, instances, base_instance)
 
 
 def barrier() -> None:

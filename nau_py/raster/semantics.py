@@ -42,6 +42,8 @@ class DrawContext:
     material: RenderMaterial | None = None
     model: F64 = field(default_factory=lambda: np.eye(4))
     instances: int = 0
+    indirect: str | None = None
+    """The buffer of draw commands, where the pass names one."""
 
 
 def column_major(matrix: F64) -> Value:

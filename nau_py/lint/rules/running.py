@@ -9,7 +9,6 @@ from nau_py.diagnostic import Diagnostic
 from nau_py.lint.rule import ERROR, NOTE, WARNING, Facts, check, rule
 from nau_py.lint.walk import nodes
 from nau_py.model.material import ValueOf
-from nau_py.model.passes import SceneReferences
 from nau_py.model.raytrace import RayVariable
 
 UNSUPPLIED_TYPES = (
@@ -31,14 +30,6 @@ UNSUPPLIED_TYPES = (
 )
 """Object types of which uniforms and parameters get no value yet."""
 
-L004 = rule(
-    "L004",
-    WARNING,
-    "Indirect drawing is ignored",
-    "This version draws whole objects; the buffer of draw commands is not used.",
-    "<scenes drawIndirectBuffer='L::b'>",
-    "<scenes>",
-)
 L007 = rule(
     "L007",
     WARNING,
@@ -113,6 +104,15 @@ for row in (
         "The initial content of a buffer could not be read.",
         "<file name='data.txt'/> holding words",
         "<file name='data.txt'/> holding numbers",
+    ),
+    (
+        "B002",
+        ERROR,
+        "Draw command too short",
+        "Drawing indices takes five numbers of 4 bytes: count, instances, first index, base "
+        "vertex, base instance; without indices four: count, instances, first, base instance.",
+        "<scenes drawIndirectBuffer='L::b'> with <SIZE value='4'/>",
+        "<SIZE value='20'/>",
     ),
     (
         "G001",
@@ -281,15 +281,6 @@ for row in (
     ),
 ):
     rule(*row)
-
-
-@check
-def indirect(facts: Facts) -> Iterator[Diagnostic]:
-    """Buffers of draw commands, which are not used."""
-    for node in nodes(facts.project):
-        if isinstance(node, SceneReferences) and node.drawIndirectBuffer:
-            where = node.where("drawIndirectBuffer")
-            yield L004.at(where, f"draw commands '{node.drawIndirectBuffer}' are not used")
 
 
 @check
