@@ -111,6 +111,7 @@ def draw_context(
         view,
         target.name,
         instances=instances,
+        pipeline=frame.session.pipeline,
         indirect=pass_.scenes.drawIndirectBuffer if pass_.scenes is not None else None,
     )
 

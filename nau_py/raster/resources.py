@@ -29,7 +29,7 @@ from nau_py.raster.textures import Texture, cube_from_images, from_image, make_2
 from nau_py.scene.images import ImageError, load_image
 
 if TYPE_CHECKING:
-    from nau_py.raster.semantics import DrawContext, Value
+    pass
 
 
 class Resources:
@@ -226,41 +226,9 @@ class Resources:
         if errors:
             raise NauError(errors)
 
-    def value(
-        self, type_: str, name: str, component: str, index: int, context: DrawContext
-    ) -> Value | None:
-        """A TEXTURE, BUFFER or RENDER_TARGET attribute for a uniform."""
-        if type_ == "RENDER_TARGET":
-            target = self._targets.get((context.target or "") if name == "CURRENT" else name)
-            if target is not None and component == "SIZE":
-                return np.array([target.width, target.height])
-            return None
-        if type_ in ("TEXTURE", "TEXTURE_MATERIAL"):
-            if name == "CURRENT":
-                bound = context.material.textures.get(index) if context.material else None
-                texture = self.texture(bound.texture, bound.path) if bound else None
-            else:
-                texture = self.texture(
-                    name
-                    if "::" in name
-                    else f"{context.material.library}::{name}"
-                    if context.material
-                    else name
-                )
-            if texture is None:
-                return None
-            channels = texture.format.channels
-            sizes = {
-                "WIDTH": texture.width,
-                "HEIGHT": texture.height,
-                "LEVELS": texture.levels,
-                "LAYERS": texture.layers,
-                "ID": texture.glo,
-                "COMPONENT_COUNT": channels,
-                "ELEMENT_SIZE": 8 * channels * np.dtype(texture.format.dtype).itemsize,
-            }
-            return np.array([sizes[component]]) if component in sizes else None
-        return None
+    def made_target(self, name: str) -> Target | None:
+        """The render target of that qualified name, if it has been used."""
+        return self._targets.get(name)
 
     def barrier(self) -> None:
         gl.barrier()

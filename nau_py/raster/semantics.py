@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.model.passes import Pass
+from nau_py.raster.objects import SOURCES, material_named
 from nau_py.scene.camera import CameraState
 from nau_py.scene.lights import LightState
 from nau_py.scene.material import RenderMaterial
@@ -42,6 +43,7 @@ class DrawContext:
     material: RenderMaterial | None = None
     model: F64 = field(default_factory=lambda: np.eye(4))
     instances: int = 0
+    pipeline: str = ""
     indirect: str | None = None
     """The buffer of draw commands, where the pass names one."""
 
@@ -168,13 +170,6 @@ def _viewport(context: DrawContext, name: str, component: str) -> Value | None:
     return _scalars(found) if found else _default("VIEWPORT", component, context)
 
 
-def _material(context: DrawContext, name: str) -> RenderMaterial | None:
-    if name == "CURRENT":
-        return context.material
-    library, _, material = name.partition("::")
-    return context.world.materials.get(library, material)
-
-
 def _pass(context: DrawContext, name: str, component: str) -> Value | None:
     """A PASS attribute of the running pass, or of ``pipeline#pass``."""
     project = context.world.project
@@ -207,20 +202,21 @@ def resolve(
     if type_ == "PASS":
         return _pass(context, name, component)
     if type_ == "COLOR":
-        material = _material(context, name)
+        material = material_named(context, name)
         colour = material.colours.get(component) if material else None
         return _scalars(colour) if colour else _default(type_, component, context)
     if type_ == "TEXTURE_BINDING":
-        material = _material(context, name)
+        material = material_named(context, name)
         bound = material is not None and index in material.textures
         return np.array([index]) if bound and component == "UNIT" else None
     if type_ == "IMAGE_TEXTURE":
         return np.array([index]) if component == "UNIT" else None
     if type_ in ("ARRAY_OF_TEXTURES_BINDING", "ARRAY_OF_IMAGE_TEXTURES"):
-        material = _material(context, name)
+        material = material_named(context, name)
         images = type_ == "ARRAY_OF_IMAGE_TEXTURES"
         arrays = (material.image_arrays if images else material.texture_arrays) if material else []
         if index >= len(arrays) or component not in ("SAMPLER_ARRAY", "FIRST_UNIT"):
             return None
         return np.array(arrays[index] if component == "SAMPLER_ARRAY" else arrays[index][:1])
-    return context.resources.value(type_, name, component, index, context)
+    source = SOURCES.get(type_)
+    return source(context, type_, name, component, index) if source else None

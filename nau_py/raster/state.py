@@ -25,6 +25,15 @@ def comparison(name: str) -> int:
     return int(getattr(GL, f"GL_{_FUNCTIONS.get(name, name)}"))
 
 
+def constant(attribute: str, name: str) -> int:
+    """What OpenGL calls the value ``name`` of a STATE attribute; of ORDER_TYPE its position."""
+    if attribute.endswith("_FUNC"):
+        return comparison(name)
+    if attribute == "ORDER_TYPE":
+        return ("FRONT_TO_BACK", "BACK_TO_FRONT").index(name)
+    return _EQUATIONS.get(name) or int(getattr(GL, f"GL_{name}"))
+
+
 def _switch(capability: int, on: bool) -> None:
     (GL.glEnable if on else GL.glDisable)(capability)
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,6 +62,26 @@ class SceneObject:
     name: str
     mesh: Mesh
     matrix: F64 = field(default_factory=lambda: np.eye(4))
+
+
+def bounding_box(objects: Sequence[SceneObject]) -> tuple[F64, F64]:
+    """The lowest and highest x, y, z, world space, of the boxes about the objects' meshes.
+
+    Of no vertices at all it is the origin.
+    """
+    corners = []
+    for item in objects:
+        points = (
+            item.mesh.positions[:, :3] if "position" in item.mesh.attributes else np.empty((0, 3))
+        )
+        if len(points):
+            ends = np.stack([points.min(axis=0), points.max(axis=0)]).astype(np.float64)
+            box = np.array([[*c, 1.0] for c in product(*ends.T)])
+            corners.append((box @ item.matrix.T)[:, :3])
+    if not corners:
+        return np.zeros(3), np.zeros(3)
+    found = np.concatenate(corners)
+    return found.min(axis=0), found.max(axis=0)
 
 
 def pad4(values: NDArray[np.floating], w: float) -> F32:

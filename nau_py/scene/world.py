@@ -14,7 +14,7 @@ from nau_py.scene.frustum import frustum_corners, frustum_mesh
 from nau_py.scene.lights import LightState, light_state
 from nau_py.scene.mapping import MaterialTable
 from nau_py.scene.material import default_material, from_model
-from nau_py.scene.mesh import F32, F64, SceneObject
+from nau_py.scene.mesh import F32, F64, SceneObject, bounding_box
 from nau_py.scene.transforms import inverse, transform_of
 from nau_py.scene.viewport import Rect, viewport_rect
 
@@ -118,6 +118,29 @@ class World:
         instead[attribute] = values
         change = transform_of(self.project, node, "SCENE", instead) @ inverse(before)
         self._changed(scene, [(o, change @ o.matrix) for o in self.scenes[scene]])
+
+    def scene_value(self, scene: str, attribute: str) -> F64 | None:
+        """A SCENE attribute, flat: matrices column after column, boxes in world space.
+
+        A box is that of the eight corners of the box of each mesh, as in Nau
+        (``boundingBox.cpp``, ``setTransform``), so around a rotated object it is not the smallest.
+        """
+        node = self._nodes.get(scene)
+        if node is None:
+            return None
+        moving = self._moving.get(scene, {})
+        if attribute == "TRANSFORM":
+            return transform_of(self.project, node, "SCENE", moving).T.reshape(-1)
+        if attribute == "TRIANGLE_COUNT":
+            groups = [g for o in self.scenes[scene] for g in o.mesh.groups]
+            return np.array([float(sum(len(g.indices) for g in groups))])
+        if attribute.startswith("BB_"):
+            low, high = bounding_box(self.scenes[scene])
+            boxes = {"BB_MIN": low, "BB_MAX": high, "BB_CENTER": (low + high) / 2}
+            return boxes.get(attribute)
+        parts = moving.get(attribute) or self.project.value(node, "SCENE", attribute)
+        numbers = [float(p) for p in parts if not isinstance(p, str)]
+        return np.array(numbers) if numbers else None
 
     def animate(self, scene: str, fraction: float) -> None:
         """Put the pose animation of a scene at ``fraction`` of its length."""

@@ -11,31 +11,15 @@ from nau_py.lint.walk import nodes
 from nau_py.model.material import ValueOf
 from nau_py.model.raytrace import RayVariable
 
-UNSUPPLIED_TYPES = (
-    "STATE",
-    "ARRAY_OF_TEXTURES",
-    "BUFFER",
-    "BUFFER_MATERIAL",
-    "BUFFER_BINDING",
-    "PASS_PRE_PROCESS_TEXTURE",
-    "PASS_POST_PROCESS_TEXTURE",
-    "PASS_PRE_PROCESS_BUFFER",
-    "PASS_POST_PROCESS_BUFFER",
-    "SCENE",
-    "SCENE_OBJECT",
-    "SPHERE",
-    "GRID",
-    "PHYSICS_MANAGER",
-    "PHYSICS_MATERIAL",
-)
-"""Object types of which uniforms and parameters get no value yet."""
+UNSUPPLIED_TYPES = ("SPHERE", "GRID", "PHYSICS_MANAGER", "PHYSICS_MATERIAL")
+"""Object types of which uniforms and parameters get no value."""
 
 L007 = rule(
     "L007",
     WARNING,
     "Value is not supplied",
     "This version has no values of that object type; the uniform keeps the value it has.",
-    "<valueof uniform='s' type='SCENE' context='S' component='SCALE'/>",
+    "<valueof uniform='s' type='GRID' context='S::g' component='LENGTH'/>",
     "<valueof uniform='s' type='RENDERER' context='CURRENT' component='MODEL'/>",
 )
 L006 = rule(

@@ -1,0 +1,171 @@
+"""Attributes of textures, buffers, targets, states and scenes as values (nau-format.md, 8.2, 9)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.model.buffer import Buffer
+from nau_py.model.node import Configured
+from nau_py.model.scene import Geometry
+from nau_py.model.texture import ArrayOfTextures
+from nau_py.model.values import Scalar
+from nau_py.raster.buffers import record_size
+from nau_py.raster.state import constant
+from nau_py.scene.material import RenderMaterial
+
+if TYPE_CHECKING:
+    from nau_py.raster.semantics import DrawContext
+
+Value = NDArray[Any]
+
+
+def _scalars(type_: str, component: str, parts: tuple[Scalar, ...]) -> Value | None:
+    """Numbers as they are; names of a STATE as OpenGL's constants."""
+    if any(isinstance(p, str) for p in parts):
+        return np.array([constant(component, str(parts[0]))]) if type_ == "STATE" else None
+    return np.array([float(p) for p in parts]) if parts else None
+
+
+def _of_node(context: DrawContext, type_: str, component: str, node: object) -> Value | None:
+    if not isinstance(node, Configured):
+        return None
+    return _scalars(type_, component, context.world.project.value(node, type_, component))
+
+
+def material_named(context: DrawContext, name: str) -> RenderMaterial | None:
+    """The current material, or ``lib::material``."""
+    if name == "CURRENT":
+        return context.material
+    library, _, material = name.partition("::")
+    return context.world.materials.get(library, material)
+
+
+def _texture(
+    context: DrawContext, type_: str, name: str, component: str, index: int
+) -> Value | None:
+    resources, material = context.resources, context.material
+    if name == "CURRENT" or type_ == "TEXTURE_MATERIAL":
+        found = material_named(context, name)
+        bound = found.textures.get(index) if found else None
+        texture = resources.texture(bound.texture, bound.path) if bound else None
+    else:
+        local = f"{material.library}::{name}" if material and "::" not in name else name
+        texture = resources.texture(local)
+    if texture is None:
+        return None
+    channels = texture.format.channels
+    sizes = {
+        "WIDTH": texture.width,
+        "HEIGHT": texture.height,
+        "LEVELS": texture.levels,
+        "LAYERS": texture.layers,
+        "ID": texture.glo,
+        "COMPONENT_COUNT": channels,
+        "ELEMENT_SIZE": 8 * channels * np.dtype(texture.format.dtype).itemsize,
+    }
+    return np.array([sizes[component]]) if component in sizes else None
+
+
+def _array(context: DrawContext, type_: str, name: str, component: str, index: int) -> Value | None:
+    node = context.world.project.names("texture array").get(name)
+    if not isinstance(node, ArrayOfTextures):
+        return None
+    if component == "TEXTURE_ID_ARRAY":
+        count = int(context.world.project.value(node, type_, "TEXTURE_COUNT")[0])
+        library = name.partition("::")[0]
+        made = [context.resources.texture(f"{library}::{node.name}_{k}") for k in range(count)]
+        return np.array([texture.glo if texture else 0 for texture in made])
+    return _of_node(context, type_, component, node)
+
+
+def _buffer(
+    context: DrawContext, type_: str, name: str, component: str, index: int
+) -> Value | None:
+    if type_ != "BUFFER":
+        material = material_named(context, name)
+        bound = [b for b in material.buffers if b.point == index] if material else []
+        if not bound:
+            return None
+        if type_ == "BUFFER_BINDING":
+            return np.array([index]) if component == "BINDING_POINT" else None
+        name = bound[0].buffer
+    node = context.world.project.names("buffer").get(name)
+    if not isinstance(node, Buffer):
+        return None
+    if component == "STRUCT_SIZE":
+        return np.array([record_size(node)])
+    if component in ("ID", "SIZE"):
+        storage = context.resources.buffer(name)
+        made = (storage.glo, storage.size) if storage is not None else (0, 0)
+        return np.array([made[component == "SIZE"]])
+    return _of_node(context, "BUFFER", component, node)
+
+
+def _target(
+    context: DrawContext, type_: str, name: str, component: str, index: int
+) -> Value | None:
+    wanted = (context.target or "") if name == "CURRENT" else name
+    made = context.resources.made_target(wanted)
+    if made is not None and component == "SIZE":  # a viewport may have resized it
+        return np.array([made.width, made.height])
+    library, _, short = wanted.partition("::")
+    node = context.world.project.render_target(library, short)
+    return _of_node(context, type_, component, node)
+
+
+def _state(context: DrawContext, type_: str, name: str, component: str, index: int) -> Value | None:
+    project = context.world.project
+    if name != "CURRENT":
+        return _of_node(context, type_, component, project.names("state").get(name))
+    written = context.material.state.get(component) if context.material else None
+    return _scalars(type_, component, written or project.default(type_, component))
+
+
+def _scene(context: DrawContext, type_: str, name: str, component: str, index: int) -> Value | None:
+    return context.world.scene_value(name, component)
+
+
+def _object(
+    context: DrawContext, type_: str, name: str, component: str, index: int
+) -> Value | None:
+    """Of ``scene::object``; Nau has no such lookup in scenes of the default type (3.3)."""
+    scene, _, wanted = name.partition("::")
+    for node in context.world.project.assets.scenes:
+        for item in node.geometry if node.name == scene else []:
+            if isinstance(item, Geometry) and item.name == wanted:
+                return _of_node(context, type_, component, item)
+    return None
+
+
+def _process(
+    context: DrawContext, type_: str, name: str, component: str, index: int
+) -> Value | None:
+    project = context.world.project
+    pipeline = project.pipeline(context.pipeline)
+    for pass_ in pipeline.passes if pipeline else []:
+        if pass_.name == name:
+            items = pass_.preProcess if "_PRE_" in type_ else pass_.postProcess
+            return _of_node(context, type_, component, items[index]) if index < len(items) else None
+    return None
+
+
+SOURCES = {
+    "TEXTURE": _texture,
+    "TEXTURE_MATERIAL": _texture,
+    "ARRAY_OF_TEXTURES": _array,
+    "BUFFER": _buffer,
+    "BUFFER_MATERIAL": _buffer,
+    "BUFFER_BINDING": _buffer,
+    "RENDER_TARGET": _target,
+    "STATE": _state,
+    "SCENE": _scene,
+    "SCENE_OBJECT": _object,
+    "PASS_PRE_PROCESS_TEXTURE": _process,
+    "PASS_POST_PROCESS_TEXTURE": _process,
+    "PASS_PRE_PROCESS_BUFFER": _process,
+    "PASS_POST_PROCESS_BUFFER": _process,
+}
+"""What answers for each object type that semantics.py does not answer for itself."""
