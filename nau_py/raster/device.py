@@ -40,6 +40,8 @@ class Device:
         self.version = str(info["GL_VERSION"])
         self.max_size = int(info["GL_MAX_TEXTURE_SIZE"])
         """The largest width or height of a texture, texels."""
+        self.max_samples = int(info["GL_MAX_SAMPLES"])
+        """The most samples a texel of a multisample texture."""
 
     @property
     def is_software(self) -> bool:

@@ -139,6 +139,27 @@ def read_texture(name: int, level: int, layout: int, kind: int, out: Array) -> N
     GL.glGetTextureImage(name, level, layout, kind, out.nbytes, out)
 
 
+def resolve_samples(
+    name: int, into: int, width: int, height: int, depth: bool, stencil: bool
+) -> None:
+    """Copy a multisample texture into a plain one of its size and format."""
+    framebuffers = [create_framebuffer(), create_framebuffer()]
+    stencil_point = GL.GL_DEPTH_STENCIL_ATTACHMENT if stencil else GL.GL_DEPTH_ATTACHMENT
+    point = stencil_point if depth else GL.GL_COLOR_ATTACHMENT0
+    for framebuffer, texture in zip(framebuffers, (name, into), strict=True):
+        GL.glNamedFramebufferTexture(framebuffer, point, texture, 0)
+    GL.glMemoryBarrier(GL.GL_ALL_BARRIER_BITS)
+    scissor = GL.glIsEnabled(GL.GL_SCISSOR_TEST)
+    GL.glDisable(GL.GL_SCISSOR_TEST)
+    box = (0, 0, width, height)
+    mask = GL.GL_DEPTH_BUFFER_BIT if depth else GL.GL_COLOR_BUFFER_BIT
+    GL.glBlitNamedFramebuffer(*framebuffers, *box, *box, mask, GL.GL_NEAREST)
+    if scissor:
+        GL.glEnable(GL.GL_SCISSOR_TEST)
+    for framebuffer in framebuffers:
+        delete_framebuffer(framebuffer)
+
+
 def upload_2d(
     name: int, width: int, height: int, layout: int, kind: int, data: Array, level: int = 0
 ) -> None:
@@ -147,6 +168,15 @@ def upload_2d(
     GL.glTextureSubImage2D(
         name, level, 0, 0, width, height, layout, kind, np.ascontiguousarray(data)
     )
+
+
+def upload_3d(
+    name: int, width: int, height: int, depth: int, layout: int, kind: int, data: Array
+) -> None:
+    """Fill a 3D texture, slice after slice."""
+    GL.glPixelStorei(GL.GL_UNPACK_ALIGNMENT, 1)
+    sizes = (width, height, depth)
+    GL.glTextureSubImage3D(name, 0, 0, 0, 0, *sizes, layout, kind, np.ascontiguousarray(data))
 
 
 def upload_face(

@@ -13,7 +13,7 @@ from nau_py.model.attributes.texture import channels
 from nau_py.model.buffer import Buffer
 from nau_py.model.linked import Project
 from nau_py.model.location import Location
-from nau_py.model.target import RenderTarget
+from nau_py.model.target import CubeMapAttachment, RenderTarget
 from nau_py.model.texture import ArrayOfTextures, CubeMap
 from nau_py.model.texture import Texture as TextureNode
 from nau_py.paths import resolve
@@ -25,8 +25,9 @@ from nau_py.raster.geometry import Geometry
 from nau_py.raster.programs import Program, compile_program
 from nau_py.raster.samplers import Samplers
 from nau_py.raster.targets import COMPLETE, Attachment, Target, window_target
-from nau_py.raster.textures import Texture, cube_from_images, from_image, make_2d
+from nau_py.raster.textures import Texture, cube_from_images, from_image, from_volume, make_texture
 from nau_py.scene.images import ImageError, load_image
+from nau_py.scene.volume import is_volume, load_volume
 
 if TYPE_CHECKING:
     pass
@@ -70,6 +71,14 @@ class Resources:
             message = f"{what} is {width} x {height}; this driver allows 1 to {most} each way"
             raise ProjectError(error("P010", where, message))
 
+    def _samples(self, what: str, wanted: int, where: Location) -> int:
+        """Samples a pixel, 0 for one. Raises where the driver allows fewer."""
+        if wanted > self.device.max_samples:
+            most = self.device.max_samples
+            message = f"{what} has {wanted} SAMPLES; this driver allows 0 to {most}"
+            raise ProjectError(error("P010", where, message))
+        return wanted if wanted > 1 else 0
+
     def target(self, library: str, name: str) -> Target:
         """A render target. Raises :class:`~nau_py.errors.ProjectError` where it is incomplete."""
         key = f"{library}::{name}"
@@ -104,6 +113,8 @@ class Resources:
             (r, g, b, a),
             max(int(value("LEVELS")[0]), 1),
             max(int(value("LAYERS")[0]), 1),
+            self._samples(f"render target '{node.name}'", int(value("SAMPLES")[0]), node.location),
+            any(isinstance(c, CubeMapAttachment) for c in node.colors),
         )
         status = target.allocate()
         if status != COMPLETE:
@@ -148,6 +159,8 @@ class Resources:
             return cube_from_images(faces, node.mipmap == "true")
         if isinstance(node, TextureNode) and node.filename:
             file = resolve(Path(node.location.file).parent, node.filename).best
+            if is_volume(file):
+                return from_volume(load_volume(file))
             return from_image(load_image(file), bool(node.mipmap))
         if isinstance(node, TextureNode):
             return self._empty(node, "TEXTURE")
@@ -169,9 +182,12 @@ class Resources:
         if type_ == "TEXTURE":
             content = str(self.project.value(node, type_, "CONTENT")[0])
         if content == "NONE":
-            return make_2d(fmt, width, height, levels, max(number("LAYERS"), 1), depth)
+            samples = self._samples(f"texture '{node.name}'", number("SAMPLES"), node.location)
+            layers = max(number("LAYERS"), 1)
+            deep = depth if depth > 1 else 0
+            return make_texture(fmt, width, height, levels, layers, deep, samples)
         wide = channels(fmt)
-        texture = make_2d({1: "R32F", 2: "RG32F", 4: "RGBA32F"}[wide], width, height, levels)
+        texture = make_texture({1: "R32F", 2: "RG32F", 4: "RGBA32F"}[wide], width, height, levels)
         random = np.random.default_rng(0)
         shape = (height, width, wide)
         normal = content == "RANDOM_NORMAL"

@@ -8,7 +8,7 @@ import numpy as np
 
 from nau_py.raster import gl
 from nau_py.raster.gl import GL
-from nau_py.raster.textures import Texture, make_2d
+from nau_py.raster.textures import Texture, make_texture
 from nau_py.scene.viewport import Rect
 
 
@@ -32,6 +32,9 @@ class Target:
     clear: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
     levels: int = 1
     layers: int = 1
+    samples: int = 0
+    cube: bool = False
+    """Whether its textures are cube maps: six layers, faces in OpenGL's order."""
     fbo: int = 0
     textures: dict[str, Texture] = field(default_factory=dict)
 
@@ -39,17 +42,28 @@ class Target:
         """Create textures and framebuffer. Returns the OpenGL completeness status."""
         self.fbo = gl.create_framebuffer()
         for index, attachment in enumerate(self.colors):
-            texture = make_2d(attachment.format, self.width, self.height, self.levels, self.layers)
+            texture = self._texture(attachment, self.levels)
             self.textures[attachment.name] = texture
             point = GL.GL_COLOR_ATTACHMENT0 + index
             GL.glNamedFramebufferTexture(self.fbo, point, texture.glo, 0)
-        depth = make_2d(self.depth.format, self.width, self.height, 1, self.layers)
+        depth = self._texture(self.depth, 1)
         self.textures[self.depth.name] = depth
         point = GL.GL_DEPTH_STENCIL_ATTACHMENT if depth.format.stencil else GL.GL_DEPTH_ATTACHMENT
         GL.glNamedFramebufferTexture(self.fbo, point, depth.glo, 0)
         buffers = [GL.GL_COLOR_ATTACHMENT0 + i for i in range(len(self.colors))] or [GL.GL_NONE]
         GL.glNamedFramebufferDrawBuffers(self.fbo, len(buffers), np.array(buffers, np.uint32))
         return int(GL.glCheckNamedFramebufferStatus(self.fbo, GL.GL_FRAMEBUFFER))
+
+    def _texture(self, attachment: Attachment, levels: int) -> Texture:
+        return make_texture(
+            attachment.format,
+            self.width,
+            self.height,
+            levels,
+            self.layers,
+            samples=self.samples,
+            cube=self.cube,
+        )
 
     def resize(self, width: int, height: int) -> None:
         """Re-allocate every attachment where the size differs; the content is lost."""

@@ -25,13 +25,29 @@ class Texture:
     height: int
     levels: int = 1
     layers: int = 1
+    samples: int = 0
 
     def read(self, level: int = 0) -> NDArray[Any]:
-        """The texels of a 2D texture: (height, width, channels), row 0 at the bottom."""
+        """The texels of a 2D texture: (height, width, channels), row 0 at the bottom.
+
+        Of a multisample texture each is the mean of its samples, or one of them for integers and
+        depth.
+        """
+        if self.samples:
+            return self._resolved()
         width, height = max(self.width >> level, 1), max(self.height >> level, 1)
         out = np.empty((height, width, self.format.channels), self.format.dtype)
         gl.read_texture(self.glo, level, self.format.layout, self.format.kind, out)
         return out
+
+    def _resolved(self) -> NDArray[Any]:
+        single = make_texture(self.format.name, self.width, self.height)
+        gl.resolve_samples(
+            self.glo, single.glo, self.width, self.height, self.format.depth, self.format.stencil
+        )
+        texels = single.read()
+        single.delete()
+        return texels
 
     def read_values(self) -> NDArray[Any]:
         """As :meth:`read`, bytes as float32 in 0..1."""
@@ -63,35 +79,49 @@ def complete_chain(width: int, height: int, depth: int = 1) -> int:
     return floor(log2(max(width, height, depth, 1))) + 1
 
 
-def make_2d(
-    name: str, width: int, height: int, levels: int = 1, layers: int = 1, depth: int = 1
+def make_texture(
+    name: str,
+    width: int,
+    height: int,
+    levels: int = 1,
+    layers: int = 1,
+    depth: int = 0,
+    samples: int = 0,
+    cube: bool = False,
 ) -> Texture:
-    """Zero-filled storage of internal format ``name``: 2D, 2D array or 3D."""
+    """Zero-filled storage of internal format ``name``: cube map, multisample, 3D, array or 2D.
+
+    The kind is chosen in that order (nau-format.md, 6.3); ``depth`` 0 is none. A cube map is
+    ``width`` on each side; a multisample texture has one level.
+    """
     fmt = pixel_format(name)
-    if depth > 1:
-        texture = Texture(
-            gl.create_texture(GL.GL_TEXTURE_3D), GL.GL_TEXTURE_3D, fmt, width, height, levels, depth
-        )
-        GL.glTextureStorage3D(texture.glo, levels, fmt.internal, width, height, depth)
+    sizes: tuple[int, ...]
+    if cube:
+        target, sizes = GL.GL_TEXTURE_CUBE_MAP, (width, width)
+    elif samples > 1 and layers > 1:
+        target, sizes = GL.GL_TEXTURE_2D_MULTISAMPLE_ARRAY, (width, height, layers)
+    elif samples > 1:
+        target, sizes = GL.GL_TEXTURE_2D_MULTISAMPLE, (width, height)
+    elif depth > 0:
+        target, sizes = GL.GL_TEXTURE_3D, (width, height, depth)
     elif layers > 1:
-        texture = Texture(
-            gl.create_texture(GL.GL_TEXTURE_2D_ARRAY),
-            GL.GL_TEXTURE_2D_ARRAY,
-            fmt,
-            width,
-            height,
-            levels,
-            layers,
-        )
-        GL.glTextureStorage3D(texture.glo, levels, fmt.internal, width, height, layers)
+        target, sizes = GL.GL_TEXTURE_2D_ARRAY, (width, height, layers)
     else:
-        texture = Texture(
-            gl.create_texture(GL.GL_TEXTURE_2D), GL.GL_TEXTURE_2D, fmt, width, height, levels
-        )
-        GL.glTextureStorage2D(texture.glo, levels, fmt.internal, width, height)
-    if fmt.depth:
+        target, sizes = GL.GL_TEXTURE_2D, (width, height)
+    texture = Texture(gl.create_texture(target), target, fmt, *sizes[:2])
+    texture.layers = 6 if cube else sizes[2] if len(sizes) == 3 else 1
+    allocate = GL.glTextureStorage3D if len(sizes) == 3 else GL.glTextureStorage2D
+    if samples > 1 and not cube:
+        texture.samples = samples
+        wide = GL.glTextureStorage3DMultisample
+        multisampled = wide if len(sizes) == 3 else GL.glTextureStorage2DMultisample
+        multisampled(texture.glo, samples, fmt.internal, *sizes, GL.GL_TRUE)
+    else:
+        texture.levels = levels
+        allocate(texture.glo, levels, fmt.internal, *sizes)
+    if fmt.depth and texture.samples == 0:
         gl.swizzle_grey(texture.glo)
-    else:
+    elif not fmt.depth:
         texture.clear()
     return texture
 
@@ -103,20 +133,31 @@ def from_image(texels: NDArray[np.uint8], mipmap: bool) -> Texture:
     """A texture of decoded texels (height, width, channels), row 0 at the bottom."""
     height, width, channels = texels.shape
     levels = complete_chain(width, height) if mipmap else 1
-    texture = make_2d(_BYTE_FORMATS[channels], width, height, levels)
+    texture = make_texture(_BYTE_FORMATS[channels], width, height, levels)
     texture.write(texels)
     texture.generate_mipmaps()
+    return texture
+
+
+_VOLUME_FORMATS = {"uint8": "R8", "uint16": "R16", "float32": "R32F"}
+
+
+def from_volume(texels: NDArray[Any]) -> Texture:
+    """A 3D texture of one channel from (depth, height, width) of uint8, uint16 or float32."""
+    depth, height, width = texels.shape
+    name = _VOLUME_FORMATS[texels.dtype.name]
+    texture = make_texture(name, width, height, depth=depth)
+    fmt = texture.format
+    gl.upload_3d(texture.glo, width, height, depth, fmt.layout, fmt.kind, texels)
     return texture
 
 
 def cube_from_images(faces: list[NDArray[np.uint8]], mipmap: bool) -> Texture:
     """A cube map from six equal RGBA faces: +x -x +y -y +z -z, rows from the bottom up."""
     height, width = faces[0].shape[:2]
-    fmt = pixel_format("RGBA")
     levels = complete_chain(width, height) if mipmap else 1
-    target = GL.GL_TEXTURE_CUBE_MAP
-    texture = Texture(gl.create_texture(target), target, fmt, width, height, levels)
-    GL.glTextureStorage2D(texture.glo, levels, fmt.internal, width, height)
+    texture = make_texture("RGBA", width, height, levels, cube=True)
+    fmt = texture.format
     for index, face in enumerate(faces):
         gl.upload_face(texture.glo, index, width, height, fmt.layout, fmt.kind, face)
     texture.generate_mipmaps()

@@ -410,9 +410,10 @@ def test_asset_findings(folder: Folder, assets: str, expected: str) -> None:
             "V005 error `RGBA8` attribute 'internalFormat' of <color> is 'RGBA8'",
         ),
         (
-            "<SIZE width=8 height=8 />",
-            "<SIZE width=8 height=8 /><SAMPLES value=4 />",
-            "P006 error `SAMPLES` render target 'rt': SAMPLES is 4; only 0 and 1 are supported",
+            '<color name="c" internalFormat="RGBA32F"/>',
+            '<cubemap name="c" internalFormat="RGBA32F"/><color name="e" internalFormat="RGBA"/>',
+            "P006 error `cubemap` render target 'rt': cube map 'c' stands beside textures that are "
+            "none",
         ),
         (
             "<SIZE width=8 height=8 />",

@@ -59,10 +59,10 @@ P005 = rule(
 P006 = rule(
     "P006",
     ERROR,
-    "Kind of render target not supported",
-    "This version has neither multisampled targets nor cube maps to draw into.",
-    "<SAMPLES value='4'/>",
-    "<SAMPLES value='0'/>",
+    "Kinds of texture do not go together",
+    "Of the colour textures of a target all are cube maps, with one sample, or none is.",
+    "<colors><color .../><cubemap .../></colors>",
+    "<colors><cubemap .../><cubemap .../></colors>",
 )
 
 
@@ -157,6 +157,23 @@ def target_size(project: Project, target: RenderTarget) -> tuple[int, int]:
     return int(width), int(height)
 
 
+def _kinds(project: Project, target: RenderTarget) -> Iterator[Diagnostic]:
+    cubes = [c for c in target.colors if isinstance(c, CubeMapAttachment)]
+    if cubes and len(cubes) < len(target.colors):
+        yield P006.at(
+            cubes[0].location,
+            f"render target '{target.name}': cube map '{cubes[0].name}' stands beside textures "
+            "that are none",
+        )
+    samples = int(project.value(target, "RENDER_TARGET", "SAMPLES")[0])
+    if cubes and samples > 1:
+        yield P006.at(
+            target.settings["SAMPLES"].location,
+            f"render target '{target.name}': SAMPLES is {samples}, but cube map "
+            f"'{cubes[0].name}' has one sample",
+        )
+
+
 @check
 def targets(facts: Facts) -> Iterator[Diagnostic]:
     """Render targets that cannot be made."""
@@ -169,20 +186,7 @@ def targets(facts: Facts) -> Iterator[Diagnostic]:
                     f"render target '{target.name}': SIZE is {width} x {height}; "
                     "both must be above 0",
                 )
-            samples = int(facts.project.value(target, "RENDER_TARGET", "SAMPLES")[0])
-            if samples > 1:
-                yield P006.at(
-                    target.settings["SAMPLES"].location,
-                    f"render target '{target.name}': SAMPLES is {samples}; only 0 and 1 are "
-                    "supported",
-                )
-            for attachment in target.colors:
-                if isinstance(attachment, CubeMapAttachment):
-                    yield P006.at(
-                        attachment.location,
-                        f"render target '{target.name}': cube map '{attachment.name}' is not "
-                        "supported as a target",
-                    )
+            yield from _kinds(facts.project, target)
             if len(target.colors) > 8:
                 yield P005.at(
                     target.location,
