@@ -22,6 +22,7 @@ from nau_py.model.node import (
 )
 from nau_py.model.pass_classes import PASS_CLASSES
 from nau_py.model.passes import Pass
+from nau_py.model.physics import PhysicsLibrary
 from nau_py.model.project import ProjectFile
 from nau_py.model.values import format_scalar
 
@@ -109,7 +110,7 @@ def _sets() -> list[str]:
 def reference_page() -> str:
     """The reference of project files and material libraries, Markdown."""
     lines = [*_INTRO.splitlines(), "", "## Elements"]
-    waiting: list[type[Node]] = [ProjectFile, MaterialLibrary]
+    waiting: list[type[Node]] = [ProjectFile, MaterialLibrary, PhysicsLibrary]
     done: set[type[Node]] = set()
     while waiting:
         cls = waiting.pop(0)

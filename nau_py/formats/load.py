@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TypeVar
 
 from nau_py.formats.bind import Binder
 from nau_py.formats.settings import parse_setting
@@ -17,6 +18,7 @@ from nau_py.model.library import MaterialLibrary
 from nau_py.model.linked import Project
 from nau_py.model.location import Location
 from nau_py.model.node import Node
+from nau_py.model.physics import PhysicsLibrary
 from nau_py.model.problem import Problem, ProblemKind
 from nau_py.model.project import ProjectFile
 from nau_py.model.values import DataType
@@ -24,6 +26,7 @@ from nau_py.paths import resolve
 
 BUILTIN_LIBRARY = Path(__file__).parent / "builtin" / "system.mlib"
 YAML_SUFFIXES = (".yaml", ".yml")
+N = TypeVar("N", bound=Node)
 _DEFAULT_KEYS = ("value", "x", "y", "z", "w", "r", "g", "b", "a")
 
 
@@ -113,10 +116,14 @@ class Reader:
                 self.declare(child)
 
     def library(self, path: Path) -> MaterialLibrary | None:
-        root = self.element(path, "materialLib", MaterialLibrary)
-        if root is None:
-            return None
-        return Binder(self.registry, self.problems).bind(root, MaterialLibrary)
+        return self._bound(path, "materialLib", MaterialLibrary)
+
+    def physics(self, path: Path) -> PhysicsLibrary | None:
+        return self._bound(path, "physicslib", PhysicsLibrary)
+
+    def _bound(self, path: Path, tag: str, cls: type[N]) -> N | None:
+        root = self.element(path, tag, cls)
+        return Binder(self.registry, self.problems).bind(root, cls) if root is not None else None
 
 
 def load_project(path: Path | str) -> Project:
@@ -137,6 +144,12 @@ def load_project(path: Path | str) -> Project:
         return project
     reader.declare_all(root)
     project.file = Binder(reader.registry, reader.problems).bind(root, ProjectFile)
+    for named in project.assets.physicsLibs:
+        found = resolve(path.parent, named.filename or "")
+        if named.filename and found.exists:
+            physics = reader.physics(found.best)
+            if physics is not None:
+                project.physics.append(physics)
     for reference in project.assets.materialLibs:
         found = resolve(path.parent, reference.filename or "")
         if reference.filename and found.exists:

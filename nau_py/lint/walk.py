@@ -15,8 +15,8 @@ def own_libraries(project: Project) -> list[MaterialLibrary]:
 
 
 def nodes(project: Project) -> Iterator[Node]:
-    """Every node of the project file and its libraries, in document order of declaration."""
+    """Every node of the project file and of its libraries, in document order of declaration."""
     if project.file.tag:
         yield from project.file.walk()
-    for library in own_libraries(project):
+    for library in [*own_libraries(project), *project.physics]:
         yield from library.walk()

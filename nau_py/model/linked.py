@@ -12,6 +12,7 @@ from nau_py.model.library import DEFAULT_LIBRARY, MaterialLibrary
 from nau_py.model.material import Material
 from nau_py.model.node import Configured, Node
 from nau_py.model.passes import Pass
+from nau_py.model.physics import PhysicsLibrary
 from nau_py.model.pipeline import Pipeline
 from nau_py.model.problem import Problem
 from nau_py.model.project import Assets, ProjectFile
@@ -35,6 +36,7 @@ class Project:
     file: ProjectFile
     registry: Registry = field(default_factory=Registry)
     libraries: list[MaterialLibrary] = field(default_factory=list)
+    physics: list[PhysicsLibrary] = field(default_factory=list)
     problems: list[Problem] = field(default_factory=list)
     sources: dict[str, str] = field(default_factory=dict)
     """Text of every file read, by the name used in locations."""

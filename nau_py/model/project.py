@@ -51,9 +51,9 @@ class LibraryReference(Node):
 
 
 class PhysicsReference(Node):
-    """A physics library: read and ignored."""
+    """A physics library file: read and checked, not simulated."""
 
-    filename: Annotated[str | None, Attr(doc="Path.", required=True)] = None
+    filename: Annotated[str | None, Attr(doc="Path.", required=True, file="physics library")] = None
 
 
 class Assets(Node):

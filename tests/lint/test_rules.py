@@ -352,7 +352,7 @@ def test_two_raytrace_passes_are_an_error_naming_both(folder: Folder) -> None:
         ("words", "X003 warning `words` text between elements is ignored: 'words'"),
         (
             "<physicsLibs><physicsLib filename='x.plib'/></physicsLibs>",
-            "L002 warning `physicsLib` physics library 'x.plib' is ignored",
+            "L002 warning `physicsLib` physics library 'x.plib' is checked, not simulated",
         ),
     ],
 )

@@ -55,6 +55,8 @@ def project_names(facts: Facts) -> Iterator[Diagnostic]:
     yield from _duplicates("light", assets.lights, N002)
     yield from _duplicates("scene", assets.scenes, N002)
     yield from _duplicates("user attribute", assets.attributes, N001)
+    for library in project.physics:
+        yield from _duplicates("physics material", library.materials, N001)
     for pipeline in project.pipelines:
         yield from _duplicates(f"pass of pipeline '{pipeline.name}'", pipeline.passes, N002)
 

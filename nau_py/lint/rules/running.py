@@ -34,8 +34,8 @@ L006 = rule(
 L002 = rule(
     "L002",
     WARNING,
-    "Physics is ignored",
-    "nau_py simulates no physics.",
+    "Physics is not simulated",
+    "Physics libraries are read and checked; nothing moves by them.",
     "<physicsLib filename='a.plib'/>",
     "leave it out",
 )
@@ -297,4 +297,6 @@ def values(facts: Facts) -> Iterator[Diagnostic]:
 def physics(facts: Facts) -> Iterator[Diagnostic]:
     """Physics libraries, which are ignored."""
     for library in facts.project.assets.physicsLibs:
-        yield L002.at(library.location, f"physics library '{library.filename}' is ignored")
+        yield L002.at(
+            library.location, f"physics library '{library.filename}' is checked, not simulated"
+        )

@@ -22,6 +22,7 @@ from nau_py.model.node import (
     Variants,
     file_key,
 )
+from nau_py.model.physics import PhysicsMaterial
 from nau_py.model.raytrace import VERTEX_ATTRIBUTES
 from nau_py.model.scene import BufferGeometry
 from nau_py.model.texture import Texture
@@ -186,7 +187,7 @@ def _unknown_child(project: Project, node: Node, tag: str, child: Element) -> It
     if (
         from_file
         or tag in ignored
-        or node.tag in _LENIENT
+        or (node.tag in _LENIENT and not isinstance(node, PhysicsMaterial))
         or (node.tag == "pass" and tag in _STRUCTURAL)
     ):
         yield S003.at(child.location, f"element <{written}> of <{node.tag}> is ignored")

@@ -9,6 +9,7 @@ from nau_py.model.attributes import (
     color,
     light,
     passes,
+    physics,
     renderer,
     scene,
     state,
@@ -46,8 +47,8 @@ BUILT_IN: dict[str, AttributeSet] = {
         scene.SCENE_OBJECT,
         scene.SPHERE,
         scene.GRID,
-        AttributeSet("PHYSICS_MANAGER"),
-        AttributeSet("PHYSICS_MATERIAL"),
+        physics.PHYSICS_MANAGER,
+        physics.PHYSICS_MATERIAL,
     )
 }
 """Attribute sets by type. ``TEXTURE_SAMPLER`` is the only one that a ``valueof`` cannot name."""
