@@ -314,6 +314,39 @@ def test_raytrace_findings(folder: Folder, program: str, more: str, expected: st
     assert any(line.startswith(expected) for line in found), "\n".join(found)
 
 
+PTX = """\
+.version 6.4
+.visible .entry __closesthit__glass(
+)
+{ ret; }
+	.visible .entry __anyhit__shadow(
+.visible .entry _Z9tracePathv(
+.visible .func helper(
+"""
+
+
+def test_what_a_compiled_file_exports_is_one_finding(folder: Folder) -> None:
+    """Names as OptiX 7 decorates them and as C++ compilers mangle ``tracePath()``."""
+    folder.write("x.ptx", PTX)
+    hit = MIRROR.replace("builtin", "x.ptx").replace("mirror", "__closesthit__glass")
+    again = hit.replace("__closesthit__glass", "tracePath").replace("CLOSEST_HIT", "MISS")
+    passes = TRACE.format(program=hit + again, more="")
+    whose = "material 'default', ray type 'R'"
+    assert findings(folder, passes) == [
+        "T005 error `x.ptx` pass 'trace': 'x.ptx' does not run here, and no 'x.py' beside it "
+        f"stands in; the file exports __closesthit__glass (closest hit, {whose}), "
+        f"__anyhit__shadow (not used any hit), tracePath (miss, {whose})"
+    ]
+    found = findings(folder, passes.replace("tracePath", "traecPath"))
+    assert any(
+        line.startswith(f"T004 error `traecPath` pass 'trace', {whose}: 'x.ptx' exports no ")
+        and line.endswith("(did you mean 'tracePath'?)")
+        for line in found
+    ), "\n".join(found)
+    folder.write("x.py", "def glass(hits): ...\n\n\ndef tracePath(hits): ...\n")
+    assert findings(folder, passes) == []
+
+
 def test_programs_are_not_executed_by_lint(folder: Folder) -> None:
     folder.write("prog.py", "raise SystemExit('executed')\n\n\ndef shade(hits): ...\n")
     program = MIRROR.replace("builtin", "prog.py").replace("mirror", "shade")

@@ -9,6 +9,7 @@ from pathlib import Path
 from nau_py.diagnostic import Diagnostic, listing, nearest
 from nau_py.graph.dependencies import build
 from nau_py.graph.resource import Resource
+from nau_py.lint.ptx import exports, kind_of
 from nau_py.lint.rule import ERROR, WARNING, Facts, check, rule
 from nau_py.model.builtins import BUILTIN_PROGRAMS, EXCEPTION, RAY_GENERATION
 from nau_py.model.linked import Project
@@ -55,7 +56,8 @@ T005 = rule(
     "T005",
     ERROR,
     "Compiled program without a Python counterpart",
-    "An OptiX `.ptx` runs only where a Python file of the same name stands beside it.",
+    "An OptiX `.ptx` runs only where a Python file of the same name stands beside it, with "
+    "functions in the place of what it exports.",
     "file='x.ptx' alone",
     "file='x.ptx' with x.py beside it",
 )
@@ -184,20 +186,65 @@ def completeness(facts: Facts) -> Iterator[Diagnostic]:
 @check
 def programs(facts: Facts) -> Iterator[Diagnostic]:
     """Every program's file and procedure, without executing anything."""
-    project = facts.project
-    for _, pass_ in raytrace_passes(project):
-        label = f"pass '{pass_.name}'"
-        entry = pass_.rtEntryPoint
-        if entry is not None and entry.rayGen is not None:
-            yield from _program(project, entry.rayGen, RAY_GENERATION, label)
-        if entry is not None and entry.exception is not None:
-            yield from _program(project, entry.exception, EXCEPTION, label)
-        for material in pass_.materials:
-            whose = f"{label}, material '{material.to or 'default'}'"
-            for group in material.rayTypes:
-                for program in group.programs:
-                    what = f"{whose}, ray type '{group.name}'"
-                    yield from _program(project, program, program.type or "", what)
+    for _, pass_ in raytrace_passes(facts.project):
+        for program, kind, whose in used_programs(pass_):
+            label = ", ".join([f"pass '{pass_.name}'", *whose])
+            yield from _program(facts.project, program, kind, label)
+
+
+def used_programs(pass_: RaytracePass) -> Iterator[tuple[Program, str, list[str]]]:
+    """(program, kind, its material and ray type in words) of everything that a pass names."""
+    entry = pass_.rtEntryPoint
+    if entry is not None and entry.rayGen is not None:
+        yield entry.rayGen, RAY_GENERATION, []
+    if entry is not None and entry.exception is not None:
+        yield entry.exception, EXCEPTION, []
+    for material in pass_.materials:
+        for group in material.rayTypes:
+            whose = [f"material '{material.to or 'default'}'", f"ray type '{group.name}'"]
+            for program in group.programs:
+                yield program, program.type or "", whose
+
+
+@check
+def compiled_programs(facts: Facts) -> Iterator[Diagnostic]:
+    """What the compiled files of a pass export, where no Python file stands in."""
+    folder = facts.project.folder
+    for _, pass_ in raytrace_passes(facts.project):
+        uses: dict[str, list[tuple[Program, str, list[str]]]] = {}
+        for program, kind, whose in used_programs(pass_):
+            if program.file and program.proc and program.file.lower().endswith(".ptx"):
+                uses.setdefault(program.file, []).append((program, kind, whose))
+        for file, listed in uses.items():
+            known = exports(resolve(folder, file).best)
+            if known and stand_in(folder, file) is None:
+                yield from _exports(pass_, file, known, listed)
+
+
+def _exports(
+    pass_: RaytracePass, file: str, known: list[str], uses: list[tuple[Program, str, list[str]]]
+) -> Iterator[Diagnostic]:
+    label, sibling = f"pass '{pass_.name}'", resolve(Path(), file).path.with_suffix(".py").name
+    roles: dict[str, list[str]] = {name: [] for name in known}
+    for program, kind, whose in uses:
+        proc = program.proc or ""
+        if proc in roles:
+            roles[proc].append(", ".join([kind.lower().replace("_", " "), *whose]))
+        else:
+            yield T004.at(
+                program.where("proc"),
+                f"{', '.join([label, *whose])}: '{file}' exports no '{proc}'; it exports "
+                f"{listing(known)}{nearest(proc, known)}",
+            )
+    listed = [
+        f"{name} ({'; '.join(used) or f'not used {kind_of(name)}'.rstrip()})"
+        for name, used in roles.items()
+    ]
+    yield T005.at(
+        uses[0][0].where("file"),
+        f"{label}: '{file}' does not run here, and no '{sibling}' beside it stands in; the file "
+        f"exports {', '.join(listed)}",
+    )
 
 
 def _program(project: Project, program: Program, kind: str, label: str) -> Iterator[Diagnostic]:
@@ -216,14 +263,14 @@ def _program(project: Project, program: Program, kind: str, label: str) -> Itera
     written = resolve(project.folder, file)
     path = stand_in(project.folder, file)
     if path is None:
-        if written.exists:
+        if written.exists and not exports(written.best):  # else one finding lists what it exports
             sibling = written.path.with_suffix(".py").name
             yield T005.at(
                 program.where("file"),
                 f"{label}: program '{proc}' is in '{file}', which does not run here, and no "
                 f"'{sibling}' beside it stands in",
             )
-        else:
+        elif not written.exists:
             near = similar(written)
             hint = f" (did you mean {listing(near)}?)" if near else ""
             yield T003.at(
