@@ -188,6 +188,11 @@ class Project:
         for lib in self.libraries:
             for name, node in _library_names(lib, kind):
                 found.setdefault(f"{lib.name}::{name}", node)
+        if kind == "buffer":  # physics makes those that take the positions of its particles
+            for physics in self.physics:
+                for body in physics.materials:
+                    if made := body.get("BUFFER"):
+                        found.setdefault(str(made[0]), body)
         return found
 
     def default_materials(self) -> list[str]:

@@ -43,6 +43,16 @@ class StageSource:
     files: list[Path]
     skipped: int
 
+    def place(self, line: int, column: int = 1) -> Location:
+        """Where line ``line`` of the text, as the driver counts, stands in its file."""
+        index, row = divmod(line, _STRIDE)
+        index = min(index, len(self.files) - 1)
+        return Location(str(self.files[index]), row + (0 if index else self.skipped), column)
+
+    def tests(self, macro: str) -> bool:
+        """Whether a condition of the preprocessor asks for ``macro``."""
+        return re.search(rf"^\s*#\s*(?:if|elif)\w*\b.*\b{macro}\b", self.text, re.M) is not None
+
 
 @dataclass(slots=True)
 class UniformSlot:
@@ -118,10 +128,7 @@ def _located(
         if match is None or "warning" in match["text"].lower().split(":")[0]:
             continue
         source = sources[stage] if stage in sources else next(iter(sources.values()))
-        index, row = divmod(int(match["line"]), _STRIDE)
-        index = min(index, len(source.files) - 1)
-        row += source.skipped if index == 0 else 0
-        where = Location(str(source.files[index]), row, int(match["column"] or 1))
+        where = source.place(int(match["line"]), int(match["column"] or 1))
         text = re.sub(r"^error\s*\w*\s*:\s*", "", match["text"], flags=re.IGNORECASE)
         found.append(error("G001", where, f"{label}, stage {stage}: {text}"))
     if not found:
@@ -152,7 +159,8 @@ def compile_program(ctx: Any, library: str, shader: Shader) -> Program:
                 raise problem
             made = _link(ctx, adapted)
         except moderngl.Error:
-            raise ShaderError(_located(str(problem), sources, shader, label)) from None
+            lacking = _lacking_extensions(ctx, sources, label)
+            raise ShaderError(lacking or _located(str(problem), sources, shader, label)) from None
     except KeyError as problem:
         message = f"{label}: #include {problem} is not supported"
         raise ShaderError(error("G001", shader.location, message)) from None
@@ -172,6 +180,29 @@ def compile_program(ctx: Any, library: str, shader: Shader) -> Program:
         "te" in sources,
         notes,
     )
+
+
+_EXTENSION = re.compile(r"^\s*#\s*extension\s+(\w+)\s*:\s*(?:enable|require)\b")
+_LINE = re.compile(r"^#line (\d+)")
+
+
+def _lacking_extensions(ctx: Any, sources: dict[str, StageSource], label: str) -> list[Diagnostic]:
+    """Extensions that a program asks for, does not do without, and the driver does not have."""
+    found = []
+    for stage, source in sources.items():
+        at = 0
+        for line in source.text.splitlines():
+            directive = _LINE.match(line)
+            at = int(directive[1]) - 1 if directive else at + 1
+            asked = _EXTENSION.match(line)
+            if asked is None or asked[1] in ctx.extensions or source.tests(asked[1]):
+                continue
+            message = (
+                f"{label}, stage {stage}, needs the extension {asked[1]}, which this driver does "
+                "not have"
+            )
+            found.append(error("G004", source.place(at), message))
+    return found
 
 
 def _link(ctx: Any, texts: dict[str, str]) -> Any:

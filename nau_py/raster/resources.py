@@ -13,6 +13,7 @@ from nau_py.model.attributes.texture import channels
 from nau_py.model.buffer import Buffer
 from nau_py.model.linked import Project
 from nau_py.model.location import Location
+from nau_py.model.physics import PhysicsMaterial
 from nau_py.model.target import CubeMapAttachment, RenderTarget
 from nau_py.model.texture import ArrayOfTextures, CubeMap
 from nau_py.model.texture import Texture as TextureNode
@@ -200,6 +201,8 @@ class Resources:
         if name not in self._buffers:
             node = self.project.names("buffer").get(name)
             self._buffers[name] = None
+            if isinstance(node, PhysicsMaterial):
+                self._buffers[name] = self._particles(node)
             if isinstance(node, Buffer):
                 try:
                     content = initial_content(self.project, node)
@@ -212,6 +215,11 @@ class Resources:
                     if self.project.value(node, "BUFFER", "CLEAR")[0] == "BY_FRAME":
                         self._cleared.append(self._buffers[name])
         return self._buffers[name]
+
+    def _particles(self, node: PhysicsMaterial) -> Any:
+        """The positions, vec4, of the particles of a body that nothing simulates: all zero."""
+        most = int(self.project.value(node, "PHYSICS_MATERIAL", "MAX_PARTICLES")[0])
+        return self.device.ctx.buffer(bytes(16 * most)) if most > 0 else None
 
     def clear_buffers_by_frame(self) -> None:
         """Fill the buffers whose CLEAR is BY_FRAME with zero (nau-format.md, 11.1)."""

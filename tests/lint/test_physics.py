@@ -49,3 +49,35 @@ def test_a_sound_library_is_one_warning(folder: Folder) -> None:
 def test_faults_are_found(folder: Folder, old: str, new: str, expected: str) -> None:
     found = findings(folder, LIBRARY.replace(old, new, 1))
     assert any(line.startswith(expected) for line in found), "\n".join(found)
+
+
+def test_buffers_of_particles_are_there(folder: Folder) -> None:
+    """The engine's physics makes them: MAX_PARTICLES positions, of which none has moved yet."""
+    vertex = "#version 330\nin vec4 position;\nvoid main() { gl_Position = position; }\n"
+    folder.write("a.vert", vertex)
+    folder.write(
+        "a.frag",
+        "#version 430\nlayout(std430, binding = 1) buffer B { vec4 at[]; };\nout vec4 c;\n"
+        "void main() { c = at[6] + vec4(at.length() / 255.0); }\n",
+    )
+    folder.write(
+        "l.mlib",
+        '<materialLib name="L"><shaders><shader name="s" vs="a.vert" ps="a.frag"/></shaders>'
+        '<materials><material name="m"><buffers><buffer name="made::p"><TYPE value="SHADER_STORAGE"'
+        '/><BINDING_POINT value="1"/></buffer></buffers><shader name="s"/></material></materials>'
+        "</materialLib>",
+    )
+    folder.write(
+        "a.plib",
+        '<physicslib name="p"><materials><material name="w" type="PARTICLES"><MAX_PARTICLES '
+        'value="7"/><BUFFER name="made::p"/></material></materials></physicslib>',
+    )
+    folder.write(
+        "project.xml",
+        '<project name="P" width="2" height="2"><assets><physicsLibs><physicsLib filename="a.plib"/>'
+        '</physicsLibs><materialLibs><materialLib filename="l.mlib"/></materialLibs></assets>'
+        '<pipelines><pipeline name="Q"><pass name="p" class="quad"><material name="m" '
+        'fromLibrary="L"/></pass></pipeline></pipelines></project>',
+    )
+    image = nau_py.Renderer(folder.load()).render().image
+    assert image[0, 0].tolist() == [7, 7, 7, 7]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -204,6 +206,27 @@ def test_glsl_errors_name_file_line_and_stage(folder: Folder) -> None:
     assert found.location.file == str(folder.path / "a.frag")
     assert found.location.line == 5
     assert found.message.startswith("shader 's' of library 'L', stage ps: `missing' undeclared")
+
+
+def test_a_lacking_extension_is_named(folder: Folder) -> None:
+    """One finding at the directive, and not the errors that follow from it; a shader that can do
+    without shows its own errors."""
+    asks = "#version 330\n\n#extension GL_XX_no_such_thing : enable\n"
+    with pytest.raises(nau_py.NauError) as raised:
+        render(folder, asks + "thing x;\nvoid main() { whatever; }\n")
+    (found,) = raised.value.diagnostics
+    assert (found.rule, Path(found.location.file).name, found.location.line) == (
+        "G004",
+        "a.frag",
+        3,
+    )
+    assert found.message == (
+        "shader 's' of library 'L', stage ps, needs the extension GL_XX_no_such_thing, which this "
+        "driver does not have"
+    )
+    with pytest.raises(nau_py.NauError) as raised:
+        render(folder, asks + "#ifdef GL_XX_no_such_thing\n#endif\nvoid main() { whatever; }\n")
+    assert {d.rule for d in raised.value.diagnostics} == {"G001"}
 
 
 def test_glsl_errors_in_file_lists_name_the_right_file(folder: Folder) -> None:

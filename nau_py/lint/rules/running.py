@@ -133,8 +133,9 @@ for row in (
     (
         "G004",
         ERROR,
-        "Stage not supported",
-        "Mesh and task stages need the extension GL_NV_mesh_shader.",
+        "Extension of OpenGL not there",
+        "A shader needs what this driver does not have, or mesh stages, for which nau_py does not "
+        "use GL_NV_mesh_shader.",
         "<shader name='s' ms='a.mesh' ps='a.frag'/>",
         "<shader name='s' vs='a.vert' ps='a.frag'/>",
     ),
