@@ -25,7 +25,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from tests.corpus.conformance import Difference, Request, Result
+from tests.corpus.conformance import Difference, Request, Result, project_files
 
 SUBSTITUTED = "__substituted_model"
 STAND_IN = "models/ntg-bench/bench.obj"
@@ -49,7 +49,7 @@ def requests(
             picture = str(folder / f"{len(made)}.png")
             project = _edited(nau / row["path"], row["folder"], copies)
             made.append(Request(project, row["pipeline"], size, reference, picture))
-    for path in sorted((nau / "projects").glob("**/*.xml")):
+    for path in project_files(nau):
         name = str(path.relative_to(nau))
         if name not in seen and only in name:
             picture = str(folder / f"{len(made)}.png")
@@ -133,7 +133,7 @@ def _pictures(request: Request) -> str:
 
 def _cells(nau: Path, request: Request, result: Result) -> list[str]:
     try:
-        name = str(Path(request.project).relative_to(nau / "projects"))
+        name = str(Path(request.project).relative_to(nau)).removeprefix("projects/")
     except ValueError:
         name = request.project
     name = name.replace(f"{SUBSTITUTED}.xml", ".xml, another model")

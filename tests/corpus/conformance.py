@@ -22,6 +22,11 @@ FRAME = 2
 """The frame whose pictures the real engine left."""
 
 
+def project_files(nau: Path) -> list[Path]:
+    """The project files of a checkout; one lies beside the engine's own source."""
+    return sorted([*(nau / "projects").glob("**/*.xml"), *(nau / "nau/geometry").glob("*.xml")])
+
+
 @dataclass
 class Request:
     """A pipeline to render. ``reference``: folder of the real engine's picture, if there is one."""

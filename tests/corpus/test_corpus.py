@@ -21,12 +21,13 @@ from nau_py.formats.load import Reader, load_library
 from nau_py.model.library import MaterialLibrary
 from nau_py.model.node import Node
 from nau_py.model.project import ProjectFile
+from tests.corpus.conformance import project_files
 from tests.formats.test_roundtrip import reread
 
 pytestmark = pytest.mark.corpus
 CORPUS = Path(os.environ.get("NAU_CORPUS", "/nonexistent"))
 ORACLE = Path(os.environ.get("NAU_ORACLE", "/nonexistent"))
-PROJECTS = sorted((CORPUS / "projects").glob("**/*.xml"))
+PROJECTS = project_files(CORPUS)
 LIBRARIES = sorted(CORPUS.glob("**/*.mlib"))
 
 
@@ -45,7 +46,7 @@ def files() -> Iterator[tuple[Path, str, type[Node]]]:
 
 
 def test_the_corpus_is_whole() -> None:
-    assert len(PROJECTS) == 118, "NAU_CORPUS must name a checkout of Nau3D/nau"
+    assert len(PROJECTS) == 119, "NAU_CORPUS must name a checkout of Nau3D/nau"
     assert len(LIBRARIES) >= 86
 
 
