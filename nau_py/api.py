@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nau_py.diagnostic import Diagnostic
+from nau_py.diagnostic import Diagnostic, Severity
 from nau_py.model.linked import Project
 
 if TYPE_CHECKING:
@@ -22,13 +22,22 @@ def load(path: str | Path) -> Project:
     return load_project(path)
 
 
-def lint(project: Project) -> list[Diagnostic]:
-    """Every finding about ``project``, in file and line order. Executes nothing of it."""
+def lint(project: Project, models: bool = False) -> list[Diagnostic]:
+    """Every finding about ``project``, in file and line order. Executes nothing of it.
+
+    ``models``: load its models too, once nothing else is an error, and add what is wrong with
+    them: vertices that are not finite, faces that rays leave out, coordinates too large.
+    """
     from nau_py.lint.engine import lint as run
     from nau_py.passes import pass_classes
     from nau_py.scene.names import default_material_names
 
-    return run(project, pass_classes(), default_material_names(project))
+    found = run(project, pass_classes(), default_material_names(project))
+    if models and project.file.tag and not any(d.severity is Severity.ERROR for d in found):
+        from nau_py.passes.models import model_faults
+
+        found += model_faults(project)
+    return found
 
 
 def plan(project: Project, pipeline: str | None = None) -> Plan:

@@ -50,6 +50,7 @@ def _looks_like_a_project(path: Path) -> bool:
 def lint(
     paths: Annotated[list[Path], typer.Argument(help="Projects, material libraries or folders.")],
     format: Annotated[Style, typer.Option(help="Output format.")] = Style.TEXT,
+    models: Annotated[bool, typer.Option(help="Load and check the models too.")] = False,
     strict: Annotated[bool, typer.Option(help="Warnings fail too.")] = False,
 ) -> None:
     """Check projects: exit status 1 where one has an error."""
@@ -62,7 +63,7 @@ def lint(
     sources: dict[str, str] = {}
     for path in collect(paths):
         project = load_library(path) if is_library(path) else load_project(path)
-        found += check(project)
+        found += check(project, models)
         sources |= project.sources
     found = list(dict.fromkeys(found))
     if format is Style.JSON:

@@ -23,7 +23,8 @@ from nau_py.passes.material_shading import MaterialShading
 from nau_py.paths import resolve as resolve_path
 from nau_py.raster.semantics import resolve
 from nau_py.raytrace.accel import Accelerator
-from nau_py.raytrace.geometry import PRECISION, RayGeometry, gather, precision
+from nau_py.raytrace.faults import face_faults
+from nau_py.raytrace.geometry import RayGeometry, gather
 from nau_py.raytrace.hits import RayLight, RayMaterial
 from nau_py.raytrace.launch import Estimate, LaunchResult, Work
 from nau_py.raytrace.programs import ProgramLoader, TrustRule
@@ -42,10 +43,9 @@ class TracingState:
 
     def __init__(self, pass_: RaytracePass, session: Session) -> None:
         self.session = session
-        self.geometry: RayGeometry = gather(
-            session.world.objects(pass_.scene_names), session.world.moved
-        )
-        self._report_faces(pass_)
+        objects = session.world.objects(pass_.scene_names)
+        self.geometry: RayGeometry = gather(objects, session.world.moved)
+        session.resources.diagnostics += face_faults(pass_, objects, self.geometry.dropped)
         self.accelerator: Accelerator = Accelerator(self.geometry)
         self._moves, self._moved = session.world.moves, session.world.moved
         self.texels = TexelStore()
@@ -53,7 +53,6 @@ class TracingState:
         self._textures: dict[TextureBinding, RayTexture | None] = {}
         self.mapped = session.pass_materials(pass_)
         self.service = MainThread()
-        objects = session.world.objects(pass_.scene_names)
         solid = [o for o in objects if o.mesh.primitive == "TRIANGLES"]
         self.shading = MaterialShading(solid, self.mapped, self.service)
         loader = _loader(session, {(CLOSEST_HIT, "material"): self.shading})
@@ -84,26 +83,6 @@ class TracingState:
             self.accelerator = Accelerator(self.geometry)
         self._moves, self._moved = world.moves, world.moved
         self._kept = None
-
-    def _report_faces(self, pass_: RaytracePass) -> None:
-        """Say which faces rays leave out, and where precision is short."""
-        found = self.session.resources.diagnostics
-        dropped = self.geometry.dropped
-        for reason, count in dropped.counts.items():
-            name, face = dropped.first[reason]
-            message = (
-                f"pass '{pass_.name}': {count} faces are {reason} and left out of ray tracing; the "
-                f"first is face {face} of '{Path(name).name}'"
-            )
-            found.append(warning("M005", pass_.location, message))
-        for item in self.session.world.objects(pass_.scene_names):
-            step, feature = precision(item)
-            if step > PRECISION * feature:
-                message = (
-                    f"pass '{pass_.name}': the coordinates of '{Path(item.name).name}' are rounded "
-                    f"to {step:g}, its smallest triangle measures {feature:g}"
-                )
-                found.append(warning("M006", pass_.location, message))
 
     def kept(self, work: Work, pixels: NDArray[np.int64]) -> LaunchResult:
         """What earlier frames sampled, if camera, mask, lights and materials are as they were."""

@@ -1,0 +1,25 @@
+"""The faults of a project's models, found without drawing anything."""
+
+from __future__ import annotations
+
+from nau_py.diagnostic import Diagnostic
+from nau_py.model.linked import Project
+from nau_py.model.pass_classes import RAYTRACE_CLASSES
+from nau_py.raytrace.faults import face_faults
+from nau_py.raytrace.geometry import gather
+from nau_py.scene.world import World
+
+
+def model_faults(project: Project) -> list[Diagnostic]:
+    """What loading every model of the project tells, and what its raytrace passes leave out.
+
+    Needs neither OpenGL nor Embree; executes nothing.
+    """
+    world = World(project, project.size)
+    found = list(world.diagnostics)
+    for pipeline in project.pipelines:
+        for pass_ in pipeline.passes:
+            if pass_.pass_class in RAYTRACE_CLASSES:
+                objects = world.objects(pass_.scene_names)
+                found += face_faults(pass_, objects, gather(objects).dropped)
+    return found
