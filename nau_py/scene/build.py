@@ -67,7 +67,7 @@ class SceneBuilder:
         merged = (scene.type or "OctreeUnified") in _MERGED_TYPES
         if merged and not any(o.mesh.buffers for o in objects):
             baked = [transform_mesh(o.mesh, o.matrix) for o in objects]
-            objects = [SceneObject("default", merge(baked))]
+            objects = [SceneObject(scene.name or "default", merge(baked))]
             if scene.has_flag("UNITIZE"):  # its box is the merged object's: no scene transform
                 objects = _unitize(objects)
         if scene.filename is None:

@@ -45,7 +45,7 @@ def faults(folder: Folder, model: str) -> list[str]:
         ("v 1e19 0 0\nf 1 2 5\n", "M005: pass 'trace': 1 faces are too large"),
         (
             "v 1e7 0 0\nv 10000001 0 0\nv 10000001 1 0\nf 5 6 7\n",
-            "M006: pass 'trace': the coordinates of 'default' are rounded to 1,",
+            "M006: pass 'trace': the coordinates of 'S' are rounded to 1,",
         ),
     ],
 )
