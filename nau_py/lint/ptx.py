@@ -21,7 +21,7 @@ _KINDS = {
 
 
 def exports(path: Path) -> list[str] | None:
-    """Names of the entry points in file order, as C++ spells them; None where there is no text.
+    """Names of the entry points in file order, as C++ spells them; None where it cannot be read.
 
     Itanium C++ ABI, 5.1: ``_Z``, a length, and the name for a function outside of namespaces.
     """
