@@ -35,11 +35,13 @@ class ProfilerClass:
         texture = target.textures[target.colors[0].name]
         lines = [(r.name, r.ms) for r in frame.records if r.status == "run"]
         lines.append(("frame", sum(r.ms for r in frame.records)))
+        if texture.format.dtype != np.uint8 or texture.samples:
+            record.notes.append(f"'{target.name}' is no 8-bit texture of one sample: no text")
+            return
         values = texture.read()
         written = _text(lines, target.width, target.height)
-        if written.any() and texture.format.dtype == np.uint8:
-            values[..., :3][written] = 255
-            texture.write(values)
+        values[..., :3][written] = 255
+        texture.write(values)
 
 
 def _text(

@@ -24,22 +24,23 @@ _BASE_TYPES: dict[str, tuple[type[np.generic], int]] = {
 _PREFIXES = {"IVEC": "INT", "UIVEC": "UINT", "BVEC": "BOOL", "VEC": "FLOAT", "DVEC": "DOUBLE"}
 
 
+def basic_types(name: str) -> list[type[np.generic]]:
+    """The basic types of ``name``, vectors and matrices expanded; empty for what is none."""
+    if name in _BASE_TYPES:
+        return [_BASE_TYPES[name][0]]
+    for prefix, base in _PREFIXES.items():
+        if name.startswith(prefix) and name[len(prefix) :].isdigit():
+            return [_BASE_TYPES[base][0]] * int(name[len(prefix) :])
+    if name.startswith(("MAT", "DMAT")):
+        columns, _, rows = name.split("MAT")[1].partition("x")
+        scalar = _BASE_TYPES["DOUBLE" if name.startswith("D") else "FLOAT"][0]
+        return [scalar] * (int(columns) * int(rows or columns))
+    return []
+
+
 def record_types(buffer: Buffer) -> list[type[np.generic]]:
-    """The basic types of one record, vectors and matrices expanded."""
-    types: list[type[np.generic]] = []
-    for entry in buffer.structure:
-        name = entry.value or ""
-        if name in _BASE_TYPES:
-            types.append(_BASE_TYPES[name][0])
-            continue
-        for prefix, base in _PREFIXES.items():
-            if name.startswith(prefix) and name[len(prefix) :].isdigit():
-                types += [_BASE_TYPES[base][0]] * int(name[len(prefix) :])
-        if name.startswith(("MAT", "DMAT")):
-            columns, _, rows = name.split("MAT")[1].partition("x")
-            scalar = _BASE_TYPES["DOUBLE" if name.startswith("D") else "FLOAT"][0]
-            types += [scalar] * (int(columns) * int(rows or columns))
-    return types
+    """The basic types of one record, in order."""
+    return [basic for entry in buffer.structure for basic in basic_types(entry.value or "")]
 
 
 def record_size(buffer: Buffer) -> int:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from nau_py.raster.semantics import DrawContext
 
 Value = NDArray[Any]
+"""A uniform's value, flat: float64 or integers, matrices column-major float32."""
 
 
 def _scalars(type_: str, component: str, parts: tuple[Scalar, ...]) -> Value | None:

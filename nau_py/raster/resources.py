@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -29,9 +29,6 @@ from nau_py.raster.targets import COMPLETE, Attachment, Target, window_target
 from nau_py.raster.textures import Texture, cube_from_images, from_image, from_volume, make_texture
 from nau_py.scene.images import ImageError, load_image
 from nau_py.scene.volume import is_volume, load_volume
-
-if TYPE_CHECKING:
-    pass
 
 
 class Resources:

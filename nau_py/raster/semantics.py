@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nau_py.model.passes import Pass
-from nau_py.raster.objects import SOURCES, material_named
+from nau_py.raster.objects import SOURCES, Value, material_named
 from nau_py.scene.camera import CameraState
 from nau_py.scene.lights import LightState
 from nau_py.scene.material import RenderMaterial
@@ -21,8 +20,6 @@ from nau_py.scene.world import World
 
 if TYPE_CHECKING:
     from nau_py.raster.resources import Resources
-
-Value = NDArray[Any]
 
 
 @dataclass(slots=True)

@@ -110,15 +110,14 @@ def make_texture(
         target, sizes = GL.GL_TEXTURE_2D, (width, height)
     texture = Texture(gl.create_texture(target), target, fmt, *sizes[:2])
     texture.layers = 6 if cube else sizes[2] if len(sizes) == 3 else 1
-    allocate = GL.glTextureStorage3D if len(sizes) == 3 else GL.glTextureStorage2D
+    storage = f"glTextureStorage{len(sizes)}D"
     if samples > 1 and not cube:
         texture.samples = samples
-        wide = GL.glTextureStorage3DMultisample
-        multisampled = wide if len(sizes) == 3 else GL.glTextureStorage2DMultisample
-        multisampled(texture.glo, samples, fmt.internal, *sizes, GL.GL_TRUE)
+        allocate = getattr(GL, f"{storage}Multisample")
+        allocate(texture.glo, samples, fmt.internal, *sizes, GL.GL_TRUE)
     else:
         texture.levels = levels
-        allocate(texture.glo, levels, fmt.internal, *sizes)
+        getattr(GL, storage)(texture.glo, levels, fmt.internal, *sizes)
     if fmt.depth and texture.samples == 0:
         gl.swizzle_grey(texture.glo)
     elif not fmt.depth:

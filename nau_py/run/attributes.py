@@ -10,22 +10,12 @@ from nau_py.diagnostic import listing, nearest
 from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Setting
 from nau_py.model.passes import Pass
+from nau_py.model.values import DataType
 from nau_py.passes.frame import FrameContext
+from nau_py.raster.buffers import basic_types
 from nau_py.scene.material import ImageBinding, RenderMaterial
 
 SETTABLE = ("RENDERER", "PASS", "CAMERA", "LIGHT", "VIEWPORT", "COLOR", "IMAGE_TEXTURE")
-BUFFER_TYPES: dict[str, str] = {
-    "INT": "<i4",
-    "UINT": "<u4",
-    "FLOAT": "<f4",
-    "DOUBLE": "<f8",
-    "BYTE": "<i1",
-    "UBYTE": "<u1",
-    "SHORT": "<i2",
-    "USHORT": "<u2",
-    "BOOL": "<u4",
-}
-_VECTORS = {"VEC": ("<f4", ""), "IVEC": ("<i4", "I"), "UIVEC": ("<u4", "UI"), "DVEC": ("<f8", "D")}
 
 
 class Attributes:
@@ -70,7 +60,7 @@ class Attributes:
             raise ValueError(
                 f"attributes of {type_} cannot be set, those of {listing(SETTABLE)} can"
             )
-        if type_ not in ("IMAGE_TEXTURE",):
+        if type_ != "IMAGE_TEXTURE":
             self._known(type_, component)
         parts = tuple(values)
         if type_ == "RENDERER":
@@ -154,13 +144,12 @@ class Attributes:
 
 
 def _layout(type_: str) -> tuple[np.dtype[Any], int]:
-    if type_ in BUFFER_TYPES:
-        return np.dtype(BUFFER_TYPES[type_]), 1
-    for prefix, (code, _) in _VECTORS.items():
-        if type_.startswith(prefix) and type_[len(prefix) :] in ("2", "3", "4"):
-            return np.dtype(code), int(type_[len(prefix) :])
-    known = listing(list(BUFFER_TYPES))
-    raise ValueError(f"'{type_}' is no type of a buffer's entry; there is {known}")
+    types = basic_types(type_) if type_ in DataType.__members__ else []
+    if not types:
+        raise ValueError(
+            f"'{type_}' is no type of a buffer's entry{nearest(type_, list(DataType.__members__))}"
+        )
+    return np.dtype(types[0]), len(types)
 
 
 def _storage(frame: FrameContext, name: str, offset: int, size: int) -> Any:

@@ -288,7 +288,8 @@ class Renderer:
         while times < MAX_REPEATS and scripts.test(pass_.testScript, context, pass_):
             self._execute(step, context, record)
             times += 1
-            if pass_.testScript is None or pass_.testScript.TEST_MODE != "RUN_WHILE":
+            again = pass_.testScript is not None and pass_.testScript.TEST_MODE == "RUN_WHILE"
+            if not (again and scripts.running):
                 break
         scripts.call(pass_.postScript, context, pass_)
         if times == 0 and pass_.testScript is not None:

@@ -67,6 +67,11 @@ class Scripts:
                 self._load(script, path)
 
     @property
+    def running(self) -> bool:
+        """Whether there is a Lua state: without one, tests say yes for ever."""
+        return self._lua is not None
+
+    @property
     def said(self) -> list[str]:
         """What scripts printed or wrote."""
         return self._lua.said if self._lua else []

@@ -449,6 +449,13 @@ def test_asset_findings(folder: Folder, assets: str, expected: str) -> None:
             "none",
         ),
         (
+            '<SIZE width=8 height=8 />\n<colors><color name="c" internalFormat="RGBA32F"/>',
+            "<SIZE width=8 height=8 /><SAMPLES value=4 /><colors>"
+            '<cubemap name="c" internalFormat="RGBA32F"/>',
+            "P006 error `SAMPLES` render target 'rt': SAMPLES is 4, but cube map 'c' has one "
+            "sample",
+        ),
+        (
             "<SIZE width=8 height=8 />",
             "<SIZE width=8 />",
             "V003 error `SIZE` <SIZE> is a UIVEC2 and lacks 'y or height'",

@@ -91,6 +91,17 @@ def test_while_a_test_says_yes_a_pass_runs(folder: Folder) -> None:
     assert "it ran 3 times" in again.render(0).report["frames"][0]["passes"][0]["notes"]
 
 
+def test_without_lua_a_pass_runs_once(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its test cannot be asked: the pass runs, but not for ever, and a warning says so."""
+    monkeypatch.setattr("nau_py.run.scripts.available", lambda: False)
+    hooks = '<testScript file="a.lua" script="again" TEST_MODE="RUN_WHILE"/>'
+    renderer = nau_py.Renderer(project(folder, "function again() return false end", hooks))
+    (record,) = renderer.render(0).report["frames"][0]["passes"]
+    assert record["status"] == "run"
+    assert "notes" not in record
+    assert "L001" in {d.rule for d in renderer.diagnostics}
+
+
 def test_cameras_and_buffers(folder: Folder) -> None:
     script = """
     function pre()
