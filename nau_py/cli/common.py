@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
@@ -61,3 +62,13 @@ def write_result(output: Path | None, text: str) -> None:
     except OSError as problem:
         message = f"output '{output}' cannot be written: {problem.strerror}"
         raise OutputError(error("E002", NOWHERE, message)) from None
+
+
+def size_of(text: str | None) -> tuple[int, int] | None:
+    """Width and height of WIDTHxHEIGHT. Raises typer.BadParameter."""
+    if text is None:
+        return None
+    match = re.fullmatch(r"(\d+)[xX](\d+)", text)
+    if match is None or 0 in (int(match[1]), int(match[2])):
+        raise typer.BadParameter(f"'{text}' is no size; write WIDTHxHEIGHT, as in 512x512")
+    return int(match[1]), int(match[2])

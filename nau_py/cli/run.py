@@ -10,19 +10,10 @@ from typing import Annotated, Any
 
 import typer
 
-from nau_py.cli.common import USAGE, guarded, say, write_result
+from nau_py.cli.common import USAGE, guarded, say, size_of, write_result
 from nau_py.diagnostic import Severity
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
-
-
-def _size(text: str | None) -> tuple[int, int] | None:
-    if text is None:
-        return None
-    match = re.fullmatch(r"(\d+)[xX](\d+)", text)
-    if match is None or 0 in (int(match[1]), int(match[2])):
-        raise typer.BadParameter(f"'{text}' is no size; write WIDTHxHEIGHT, as in 512x512")
-    return int(match[1]), int(match[2])
 
 
 def _frames(text: str) -> tuple[int, int]:
@@ -92,7 +83,7 @@ def run(
     if project is None:
         sys.stderr.write("Missing argument 'PROJECT'. Try 'nau-run --help'.\n")
         raise typer.Exit(USAGE)
-    window, (first, last) = _size(size), _frames(frames)
+    window, (first, last) = size_of(size), _frames(frames)
     given = _parameters(set_ or [])
     import nau_py
     from nau_py.cli.progress import progress_bar

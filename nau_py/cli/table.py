@@ -14,7 +14,7 @@ def _count(number: int) -> str:
 
 def print_table(report: dict[str, Any], explain: bool) -> None:
     """Print the last frame's passes: status, time, pixels, rays by kind, rays avoided."""
-    console = Console(width=None if Console().is_terminal else 140)
+    console = Console(width=None if Console().is_terminal else 160)
     frame = report["frames"][-1]
     title = f"{report['project']}: {frame['pipeline']}, frame {frame['index']}"
     table = Table(title=title, title_justify="left")
@@ -24,7 +24,7 @@ def print_table(report: dict[str, Any], explain: bool) -> None:
     for name in ("ms", "pixels"):
         table.add_column(name, justify="right")
     table.add_column("rays by kind")
-    for name in ("rays avoided", "est. error"):
+    for name in ("rays avoided", "est. error", "ms to halve it"):
         table.add_column(name, justify="right")
     for item in frame["passes"]:
         ran = item["status"] == "run"
@@ -39,6 +39,7 @@ def print_table(report: dict[str, Any], explain: bool) -> None:
             rays,
             _count(item["rays_avoided"]),
             f"{error:.4f}" if error is not None else "",
+            f"{item['ms_to_halve_error']:,.0f}" if error is not None else "",
         )
     table.add_section()
     total = sum(report["totals"]["rays"].values())
@@ -50,6 +51,7 @@ def print_table(report: dict[str, Any], explain: bool) -> None:
         "",
         f"{total:,} rays" if total else "",
         _count(report["totals"]["rays_avoided"]),
+        "",
         "",
     )
     console.print(table)

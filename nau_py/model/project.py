@@ -6,7 +6,9 @@ from typing import Annotated
 
 from pydantic import Field
 
+from nau_py.model.accuracy import Accuracy
 from nau_py.model.camera import Camera
+from nau_py.model.effects import Effects
 from nau_py.model.events import Interpolator, Route, Sensor
 from nau_py.model.interface import Atomic, Interface
 from nau_py.model.light import Light
@@ -108,4 +110,6 @@ class ProjectFile(Node):
     ] = None
     assets: Annotated[Assets | None, Child(Assets)] = None
     pipelines: Annotated[Pipelines | None, Child(Pipelines)] = None
+    effects: Annotated[Effects | None, Child(Effects)] = None
+    accuracy: Annotated[Accuracy | None, Child(Accuracy)] = None
     interface: Annotated[Interface | None, Child(Interface)] = None

@@ -6,6 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.scene.camera import CameraState
@@ -24,7 +27,10 @@ class RunOptions:
 
     ``samples`` overrides RAYS_PER_PIXEL; ``threads`` of 0 means one a core, ``tile`` (rays) of 0
     a size that suits the programs; ``check_numerics``
-    makes any value that is not finite an error.
+    makes any value that is not finite an error. ``mask``: ``project``, or ``none`` or ``all`` to
+    write 0 or 1 into the mask of the raytrace pass. ``texture_filter``: ``NEAREST`` or ``LINEAR``
+    for image textures whose filter the project leaves open. ``window_format``: the window's texel
+    format; ``RGBA32F`` keeps what 8 bits would round and clamp.
     """
 
     samples: int | None = None
@@ -34,11 +40,17 @@ class RunOptions:
     no_programs: bool = False
     tile: int = 0
     check_numerics: bool = False
+    mask: str = "project"
+    texture_filter: str = ""
+    window_format: str = "RGBA"
 
 
 @dataclass(slots=True)
 class PassRecord:
-    """What a pass did. ``rays`` counts rays by kind; ``avoided`` the primary rays not traced."""
+    """What a pass did. ``rays`` counts rays by kind; ``avoided`` the primary rays not traced.
+    ``stages``: milliseconds by stage, where a pass has several. ``taken`` and ``error``: samples
+    and estimated standard error of each pixel of a raytrace pass's target, (h, w), row 0 at the
+    bottom; the error is infinite where one sample tells nothing, 0 where nothing was traced."""
 
     name: str
     pass_class: str
@@ -53,6 +65,9 @@ class PassRecord:
     blame: str = ""
     """Where the first value that is not finite came from."""
     notes: list[str] = field(default_factory=list)
+    stages: dict[str, float] = field(default_factory=dict)
+    taken: NDArray[np.int32] | None = None
+    error: NDArray[np.float32] | None = None
 
 
 Progress = Callable[[str, int, int], None]
@@ -89,7 +104,9 @@ class Session:
         """The material mapping of a pass, made once."""
         key = pass_.name or ""
         if key not in self.materials:
-            self.materials[key] = self.world.materials.for_pass(pass_, self.pipeline)
+            self.materials[key] = self.world.materials.for_pass(
+                pass_, self.pipeline, self.options.texture_filter
+            )
         return self.materials[key]
 
 

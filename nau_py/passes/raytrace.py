@@ -12,6 +12,7 @@ from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.model.raytrace import RaytracePass
 from nau_py.passes.access import add_process, texture
+from nau_py.passes.stages import Stages
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord
@@ -35,7 +36,13 @@ class RaytraceClass:
 
     def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
         from nau_py.passes.drawing import pass_value, process, target_and_rect
-        from nau_py.passes.tracing import read_inputs, read_mask, store_colours, tracing_state
+        from nau_py.passes.tracing import (
+            force_mask,
+            read_inputs,
+            read_mask,
+            store_colours,
+            tracing_state,
+        )
         from nau_py.raytrace.adaptive import run_adaptive
         from nau_py.raytrace.camera import camera_rays, camera_record
         from nau_py.raytrace.launch import LaunchSettings, Work, run_launch, select
@@ -46,14 +53,19 @@ class RaytraceClass:
         target, rect = target_and_rect(pass_, frame, uses_camera=True)
         frame.rect = rect
         process(pass_.preProcess, frame)
+        stages = Stages(record)
         state = tracing_state(pass_, frame.session)
         state.update(pass_)
+        stages.end("build")
+        options = frame.session.options
+        if options.mask != "project":
+            force_mask(pass_, frame, float(options.mask == "all"))
         inputs = read_inputs(pass_, frame)
+        stages.end("read_back")
         mask = read_mask(pass_, inputs)
         width, height = target.width, target.height
         pixels = select(mask, width, height)
         scene = state.scene(pass_, frame, target, inputs)
-        options = frame.session.options
 
         def value(name: str) -> float:
             return float(pass_value(frame.project, pass_, name))
@@ -78,6 +90,7 @@ class RaytraceClass:
             state.label,
             service=state.service,
         )
+        stages.end("build")
         progress = frame.session.progress
 
         def tell(done: int, total: int) -> None:
@@ -90,7 +103,12 @@ class RaytraceClass:
             kept = state.kept(work, pixels) if accumulate else None
             counts = _spp(pass_, mask, pixels, samples)
             result = run_launch(work, pixels, tell, counts, kept)
+        stages.end("shade")
+        stages.move("shade", "trace", result.counts.traced_share)
         store_colours(target, pixels, result.colours)
+        stages.end("read_back")
+        record.taken = _scattered(result.estimate.taken, pixels, (height, width), np.int32)
+        record.error = _scattered(result.estimate.error, pixels, (height, width), np.float32)
         process(pass_.postProcess, frame)
         record.pixels = len(pixels)
         record.rays = dict(result.counts.rays)
@@ -107,6 +125,15 @@ class RaytraceClass:
             record.notes.append(
                 f"{result.counts.cut_layers} rays met more ignored hits than the limit"
             )
+
+
+def _scattered(
+    values: NDArray[Any], pixels: NDArray[np.int64], shape: tuple[int, int], dtype: type
+) -> NDArray[Any]:
+    """An image of ``values`` at ``pixels``, zero elsewhere."""
+    image: NDArray[Any] = np.zeros(shape[0] * shape[1], dtype)
+    image[pixels] = values
+    return image.reshape(shape)
 
 
 def _spp(

@@ -264,6 +264,17 @@ def read_inputs(pass_: RaytracePass, frame: FrameContext) -> dict[str, NDArray[A
     return found
 
 
+def force_mask(pass_: RaytracePass, frame: FrameContext, weight: float) -> None:
+    """Write ``weight`` over the mask of the pass, for whoever reads it."""
+    source = pass_.mask
+    found = frame.session.resources.texture(source.texture or "") if source else None
+    if source is None or found is None:
+        return
+    values = found.read_values().copy()
+    values[:, :, component(source.mask, values.shape[2])] = weight
+    found.write_values(values)
+
+
 def read_mask(pass_: RaytracePass, inputs: dict[str, NDArray[Any]]) -> NDArray[Any] | None:
     values = inputs.get(pass_.mask.var or "") if pass_.mask else None
     if values is None:
@@ -281,11 +292,4 @@ def store_colours(target: Target, pixels: NDArray[np.int64], colours: NDArray[np
     image[pixels] = colours
     channels = texture_.format.channels
     shaped = image.reshape(target.height, target.width, 4)[:, :, :channels]
-    dtype = texture_.format.dtype
-    if np.issubdtype(dtype, np.integer) and not texture_.format.integer:
-        scale = np.float32(np.iinfo(np.dtype(dtype)).max)
-        shaped = np.rint(np.clip(shaped, 0, 1) * scale)
-    elif dtype == np.float16:  # saturates: infinity would spread through blurs
-        most = np.finfo(np.float16).max
-        shaped = np.clip(shaped, -most, most)
-    texture_.write(shaped)
+    texture_.write_values(shaped)

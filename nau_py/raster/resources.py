@@ -37,14 +37,16 @@ class Resources:
     ``diagnostics`` collects what could not be made; the draw that needs it goes on without.
     """
 
-    def __init__(self, device: Device, project: Project, window: tuple[int, int]) -> None:
+    def __init__(
+        self, device: Device, project: Project, window: tuple[int, int], texels: str = "RGBA"
+    ) -> None:
         self.device = device
         self.project = project
         self.samplers = Samplers()
         self.geometry = Geometry(device.ctx)
         self.blocks = UniformBlocks(device.ctx)
         self._check_size("the window", *window, project.file.location)
-        self.window = window_target(*window)
+        self.window = window_target(*window, texels)
         self.diagnostics: list[Diagnostic] = []
         self._targets: dict[str, Target] = {}
         self._textures: dict[str, Texture | None] = {}

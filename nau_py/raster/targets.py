@@ -113,13 +113,13 @@ class Target:
 COMPLETE = int(GL.GL_FRAMEBUFFER_COMPLETE)
 
 
-def window_target(width: int, height: int) -> Target:
-    """The window: 8-bit RGBA with depth and stencil, never shown."""
+def window_target(width: int, height: int, texels: str = "RGBA") -> Target:
+    """The window: 8-bit RGBA, or other ``texels``, with depth and stencil, never shown."""
     target = Target(
         "window",
         width,
         height,
-        [Attachment("window", "RGBA")],
+        [Attachment("window", texels)],
         Attachment("window_depth", "DEPTH24_STENCIL8"),
     )
     target.allocate()

@@ -61,6 +61,18 @@ class Texture:
             self.glo, self.width, self.height, self.format.layout, self.format.kind, wanted
         )
 
+    def write_values(self, values: NDArray[Any]) -> None:
+        """As :meth:`write`, from floats: normalised formats take 0..1, half floats saturate, for
+        infinity would spread through blurs."""
+        dtype = self.format.dtype
+        if np.issubdtype(dtype, np.integer) and not self.format.integer:
+            scale = np.float32(np.iinfo(np.dtype(dtype)).max)
+            values = np.rint(np.clip(values, 0, 1) * scale)
+        elif dtype == np.float16:
+            most = np.finfo(np.float16).max
+            values = np.clip(values, -most, most)
+        self.write(values)
+
     def clear(self, level: int | None = None) -> None:
         """Fill a level, or every one, with zero."""
         chosen = range(self.levels) if level is None else [level]

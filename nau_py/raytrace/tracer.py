@@ -17,6 +17,7 @@ from nau_py.raytrace.kernels import tables as t
 from nau_py.raytrace.kernels.advance import advance, march, send
 from nau_py.raytrace.kernels.any_hit import filter_address
 from nau_py.raytrace.kernels.embree import CONTEXT, RAY_FLOATS
+from nau_py.raytrace.kernels.jit import COUNTS_CYCLES, cycles_now
 from nau_py.raytrace.programs import BoundProgram
 from nau_py.raytrace.scene import Scene
 from nau_py.raytrace.vectors import F32
@@ -45,12 +46,15 @@ _CODES = {name: code for code, name in enumerate(t.KINDS)}
 @dataclass(slots=True)
 class RayCounts:
     """What one tile of work cost. ``sources``: for each program or pass that gave a value that is
-    not finite, how many and the first pixel."""
+    not finite, how many and the first pixel. ``cycles``: of the processor, and of them ``traced``
+    in Embree (0 where they cannot be counted)."""
 
     rays: dict[str, int] = field(default_factory=dict)
     nonfinite: int = 0
     cut_layers: int = 0
     sources: dict[str, tuple[int, int]] = field(default_factory=dict)
+    cycles: int = 0
+    traced: int = 0
 
     def add(self, kind: str, count: int) -> None:
         if count:
@@ -76,6 +80,14 @@ class RayCounts:
             self.blame(source, count, pixel)
         self.nonfinite += other.nonfinite
         self.cut_layers += other.cut_layers
+        self.cycles += other.cycles
+        self.traced += other.traced
+
+    @property
+    def traced_share(self) -> float:
+        """The part of the time in which rays were traced; the rest is shading. 1 where that
+        cannot be told."""
+        return min(self.traced / self.cycles, 1.0) if self.cycles > 0 else 1.0
 
 
 class Tracer:
@@ -86,6 +98,7 @@ class Tracer:
         self.shift = 0
         """Samples of the same pixel >> shift are traced together."""
         self._counters = np.zeros(t.COUNTERS, np.int64)
+        self._begun = 0
         self._named: dict[str, int] = {}
         self._rest = RayCounts()
         self._lanes = np.zeros(1, _LANES)
@@ -97,6 +110,7 @@ class Tracer:
     def results(self, count: int) -> F32:
         """Room for a tile's results, zero, (count, 4); it and the counts begin anew."""
         self._counters[:] = 0
+        self._begun = cycles_now()
         self._named.clear()
         self._rest = RayCounts()
         if len(self._results) < count:
@@ -115,6 +129,8 @@ class Tracer:
             found.add(name, count)
         found.nonfinite = self._rest.nonfinite + int(self._counters[t.NONFINITE])
         found.cut_layers = int(self._counters[t.CUT])
+        found.traced = int(self._counters[t.IN_EMBREE])
+        found.cycles = cycles_now() - self._begun if COUNTS_CYCLES else 0
         return found
 
     def dropped(self, source: str, count: int, pixel: int) -> None:

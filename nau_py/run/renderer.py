@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
 
@@ -46,13 +46,18 @@ class Frame:
     ``image``: the picture, uint8 (height, width, 4), row 0 at the top; float32 where a pipeline
     without a window pass ends in a float target. ``targets``: every texture that a pass writes,
     by qualified name, (height, width, channels), row 0 at the top, native dtype.
-    ``report``: what the frame cost; the schema is in docs/report.md.
+    ``report``: what the frame cost; the schema is in docs/report.md. ``samples`` and ``error``: of
+    each pixel of the raytrace pass's target, the samples taken, int32, and the estimated standard
+    error of its colour, root mean square over RGB, float32, (height, width), row 0 at the top;
+    None where nothing was traced.
     """
 
     index: int
     image: NDArray[Any]
     targets: dict[str, NDArray[Any]]
     report: dict[str, Any]
+    samples: NDArray[np.int32] | None = None
+    error: NDArray[np.float32] | None = None
 
 
 class Renderer:
@@ -99,6 +104,8 @@ class Renderer:
         self._scripts: Scripts | None = None
         self._next = 0
         self._setup_ms = 0.0
+        self.capture_ms = 0.0
+        """Milliseconds that reading the last frame's targets took."""
 
     @property
     def pipeline(self) -> Pipeline:
@@ -158,7 +165,7 @@ class Renderer:
         if errors:
             raise ProjectError(errors)
         self._note(world.diagnostics)
-        resources = Resources(device(), self.project, self._size)
+        resources = Resources(device(), self.project, self._size, self._options.window_format)
         return Session(
             self.project,
             self.pipeline.name or "",
@@ -201,7 +208,24 @@ class Renderer:
             start = perf_counter()
             records = self._step(self._next)
             self._next += 1
+        return self._finished(frame, start, records)
+
+    def again(self, seed: int) -> Frame:
+        """Render the frame of the last :meth:`render` once more, with other random numbers.
+
+        Nothing else changes, but what a pass reads of the frame before is now this frame's.
+        """
+        if self._next == 0:
+            raise ValueError("no frame has been rendered yet")
+        self.session.options = replace(self._options, seed=seed)
+        start = perf_counter()
+        records = self._step(self._next - 1)
+        return self._finished(self._next - 1, start, records)
+
+    def _finished(self, frame: int, start: float, records: list[PassRecord]) -> Frame:
+        before = perf_counter()
         image, targets = self._capture()
+        self.capture_ms = (perf_counter() - before) * 1000
         ms = (perf_counter() - start) * 1000
         report = make_report(
             self.project,
@@ -213,7 +237,13 @@ class Renderer:
         )
         if self.ended:
             report["ended"] = self._turns.why
-        return Frame(frame, image, targets, report)
+        traced = [r for r in records if r.taken is not None]
+        if not traced:
+            return Frame(frame, image, targets, report)
+        taken, wrong = traced[-1].taken, traced[-1].error
+        assert taken is not None
+        assert wrong is not None
+        return Frame(frame, image, targets, report, taken[::-1], wrong[::-1])
 
     def move(self, name: str, matrix: NDArray[Any]) -> None:
         """Put the objects called ``name`` elsewhere from the next frame on.

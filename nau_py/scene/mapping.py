@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from nau_py.model.library import DEFAULT_LIBRARY, qualified
 from nau_py.model.linked import Project
 from nau_py.model.maps import InjectedColor, InjectionMap, matches
 from nau_py.model.node import Configured
 from nau_py.model.passes import Pass
+from nau_py.model.texture import Texture
 from nau_py.scene.material import (
     BufferBinding,
     ImageBinding,
@@ -49,15 +52,21 @@ class MaterialTable:
         """Names in the default library, in order of definition."""
         return [name for library, name in self._materials if library == DEFAULT_LIBRARY]
 
-    def for_pass(self, pass_: Pass, pipeline: str) -> PassMaterials:
-        return PassMaterials(self, pass_, pipeline)
+    def for_pass(self, pass_: Pass, pipeline: str, texture_filter: str = "") -> PassMaterials:
+        """The materials of ``pass_``. ``texture_filter``: NEAREST or LINEAR, the filter of image
+        textures that have no other."""
+        return PassMaterials(self, pass_, pipeline, texture_filter)
 
 
 class PassMaterials:
     """The materials of one pass: injection maps first, then material maps, which win."""
 
-    def __init__(self, table: MaterialTable, pass_: Pass, pipeline: str) -> None:
+    def __init__(
+        self, table: MaterialTable, pass_: Pass, pipeline: str, texture_filter: str = ""
+    ) -> None:
         self._table = table
+        self._filter = texture_filter
+        self._filtered: dict[str, RenderMaterial] = {}
         self._library = f"{pipeline}#{pass_.name}"
         self._mapped: dict[str, RenderMaterial] = {}
         self._everything: RenderMaterial | None = None
@@ -79,7 +88,22 @@ class PassMaterials:
     def __getitem__(self, name: str) -> RenderMaterial | None:
         """The material to draw geometry of material ``name`` with."""
         found = self._mapped.get(name) or self._everything
-        return found or self._table.get(DEFAULT_LIBRARY, name)
+        found = found or self._table.get(DEFAULT_LIBRARY, name)
+        if not self._filter or found is None:
+            return found
+        if name not in self._filtered:
+            textures = {unit: self._with_filter(b) for unit, b in found.textures.items()}
+            self._filtered[name] = replace(found, textures=textures)
+        return self._filtered[name]
+
+    def _with_filter(self, binding: TextureBinding) -> TextureBinding:
+        given = {name for name, _ in binding.sampler}
+        node = self._table.project.names("texture").get(binding.texture)
+        image = binding.path is not None or (isinstance(node, Texture) and node.filename)
+        if not image or given & {"MAG_FILTER", "MIN_FILTER"}:
+            return binding
+        more = (("MAG_FILTER", (self._filter,)), ("MIN_FILTER", (self._filter,)))
+        return replace(binding, sampler=(*binding.sampler, *more))
 
     def _inject(self, name: str, injection: InjectionMap) -> None:
         clone = self._mapped.get(name)

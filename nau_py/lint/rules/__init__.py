@@ -4,6 +4,7 @@
 def families() -> None:
     """Import every family, so that its rules are registered."""
     from nau_py.lint.rules import (  # noqa: F401
+        accuracy,
         dataflow,
         files,
         names,

@@ -26,7 +26,7 @@ from nau_py.raytrace.kernels.embree import (
     row,
     whose,
 )
-from nau_py.raytrace.kernels.jit import inner
+from nau_py.raytrace.kernels.jit import cycles, inner
 from nau_py.raytrace.kernels.memory import f32, i8, i32, i64, put_i64
 from nau_py.raytrace.kernels.scatter import absorb, pass_through
 from nau_py.raytrace.kernels.shade import add, defer, rgb
@@ -52,7 +52,7 @@ from nau_py.raytrace.kernels.tables import (
     set_weight,
     weight_of,
 )
-from nau_py.raytrace.kernels.visibility import MAX_LAYERS, count, opacity, sound
+from nau_py.raytrace.kernels.visibility import MAX_LAYERS, count, opacity, sound, spent
 
 
 @inner
@@ -202,7 +202,9 @@ def step(scene: Any, tile: Any, ray_type: int, size: int) -> int:
             board(tile, path, lanes, which)
             lanes += 1
     if lanes > 0:
+        begun = cycles()
         shoot(scene, tile, ray_type, lanes)
+        spent(tile, begun)
     going = 0
     for which in range(size):
         path = path_at(tile.work, which)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import os
+import platform
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from llvmlite import ir
 from numba import cfunc, njit, types
+from numba.extending import intrinsic
 
 F = TypeVar("F", bound=Callable[..., object])
 V3 = tuple[float, float, float]
@@ -76,3 +79,29 @@ def inner(function: F) -> F:
         no_cfunc_wrapper=True,
     )(function)
     return cast(F, compiled)
+
+
+COUNTS_CYCLES = platform.machine().lower() in ("x86_64", "amd64")
+"""Whether the processor's counter can be read here: elsewhere the instruction may be forbidden."""
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def cycles(typing: Any) -> Any:
+    """The processor's cycle counter, int64; 0 where it cannot be read."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        word = ir.IntType(64)
+        if not COUNTS_CYCLES:
+            return ir.Constant(word, 0)
+        counter = ir.FunctionType(word, [])
+        return builder.call(
+            builder.module.declare_intrinsic("llvm.readcyclecounter", (), counter), []
+        )
+
+    return types.int64(), generate
+
+
+@kernel
+def cycles_now() -> int:
+    """:func:`cycles` for Python."""
+    return cycles()

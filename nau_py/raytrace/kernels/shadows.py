@@ -20,7 +20,7 @@ from nau_py.raytrace.kernels.embree import (
     row,
     whose,
 )
-from nau_py.raytrace.kernels.jit import V3, inner
+from nau_py.raytrace.kernels.jit import V3, cycles, inner
 from nau_py.raytrace.kernels.memory import f32, i8, i32, i64, put_f32, put_i64
 from nau_py.raytrace.kernels.tables import (
     DECIDED,
@@ -35,17 +35,18 @@ from nau_py.raytrace.kernels.tables import (
     set_ray_origin,
     shadow_at,
 )
-from nau_py.raytrace.kernels.visibility import count, shadow_type_of, sound, visibility
+from nau_py.raytrace.kernels.visibility import count, shadow_type_of, sound, spent, visibility
 
 
 @inner
 def see(scene: Any, tile: Any, ray_type: int, lanes: int) -> None:
     """What the first ``lanes`` rays of the packet see, 0 to 1, into ``tile.seen``."""
-    packet = tile.packet
+    packet, begun = tile.packet, cycles()
     if i8(scene.has_any_hit, ray_type) <= DECIDED and narrow(packet, lanes):
         blocked_packet(scene, tile, ask(scene, tile, ray_type, COHERENT), lanes)
         for lane in range(lanes):
             put_f32(tile.seen, lane, 0.0 if row(packet, TFAR, lane) < 0.0 else 1.0)
+        spent(tile, begun)
         return
     for lane in range(lanes):
         origin = (row(packet, 0, lane), row(packet, 1, lane), row(packet, 2, lane))
@@ -61,6 +62,7 @@ def see(scene: Any, tile: Any, ray_type: int, lanes: int) -> None:
             scene, tile, ray_type, origin, direction, row(packet, TFAR, lane), pixel, sample, depth
         )
         put_f32(tile.seen, lane, seen)
+    spent(tile, begun)
 
 
 @inner

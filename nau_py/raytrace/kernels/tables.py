@@ -269,8 +269,9 @@ KINDS = (
     "continuation",
 )
 PRIMARY, SHADOW, REFLECTION, REFRACTION, AMBIENT, INDIRECT, CONTINUATION, OTHER = range(8)
-NONFINITE, CUT, COUNTERS = 8, 9, 10
-"""Slots of the counters (int64): rays by kind, rays not finite, rays cut by the layer limit."""
+NONFINITE, CUT, IN_EMBREE, COUNTERS = 8, 9, 10, 11
+"""Slots of the counters (int64): rays by kind, rays not finite, rays cut by the layer limit, cycles
+that rays took."""
 
 USER = 127
 """The code of a program that is no kernel: Python answers for it."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from nau_py.raytrace.kernels.codes import ALPHA_TEST, NONE, ONE_SIDED, STOCHASTIC_ALPHA
 from nau_py.raytrace.kernels.embree import ask, blocked, hit, nearest, whose
-from nau_py.raytrace.kernels.jit import V3, inner
+from nau_py.raytrace.kernels.jit import V3, cycles, inner
 from nau_py.raytrace.kernels.memory import i8, i32, i64, put_i64
 from nau_py.raytrace.kernels.sampling import uniform
 from nau_py.raytrace.kernels.surface import spawn, surface_point, texel_alpha
@@ -17,6 +17,7 @@ from nau_py.raytrace.kernels.tables import (
     CONTINUATION,
     CUT,
     DECIDED,
+    IN_EMBREE,
     NONFINITE,
     USER,
     diffuse_of,
@@ -35,6 +36,12 @@ FAINT = 1e-6
 def count(tile: Any, slot: int) -> None:
     """Add one to a counter."""
     put_i64(tile.counts, slot, i64(tile.counts, slot) + 1)
+
+
+@inner
+def spent(tile: Any, since: int) -> None:
+    """Note the cycles since ``since`` as those of rays."""
+    put_i64(tile.counts, IN_EMBREE, i64(tile.counts, IN_EMBREE) + cycles() - since)
 
 
 @inner

@@ -1,0 +1,218 @@
+"""What the measurements of a sweep say: which settings are worth their time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite, sqrt
+
+from nau_py.accuracy.candidate import Candidate
+from nau_py.accuracy.front import Point, at_error, at_time, front, knee
+from nau_py.accuracy.measure import Measured, Reference
+from nau_py.accuracy.report import (
+    Answer,
+    Estimate,
+    RegionErrors,
+    SettingCost,
+    TimeSpread,
+    Verified,
+)
+from nau_py.accuracy.statistics import Interval, bias_and_variance, exponent, interval, spread
+
+MEASURES = ("mse", "rmse", "relmse", "psnr", "ssim", "flip")
+RANKED = ("rmse", "mse", "relmse")
+"""Measures that settings are ranked by: those that are to be small."""
+
+
+def error_of(m: Measured, region: str, measure: str) -> Interval:
+    """An error of a candidate over its runs."""
+    return interval([getattr(e, measure) for e in m.errors[region]])
+
+
+def estimate(found: Interval) -> Estimate:
+    def number(value: float) -> float | None:
+        return value if isfinite(value) else None
+
+    return Estimate(mean=number(found.mean), interval=(number(found.low), number(found.high)))
+
+
+def root(value: float) -> float | None:
+    return sqrt(value) if isfinite(value) and value >= 0 else None
+
+
+@dataclass(frozen=True, slots=True)
+class Judge:
+    """Ranks ``measured`` by time and by ``measure`` over ``region``."""
+
+    measure: str
+    region: str
+    truth: Reference
+    measured: list[Measured]
+
+    @property
+    def regions(self) -> tuple[str, ...]:
+        return ("picture", "mask") if self.truth.mask is not None else ("picture",)
+
+    def better(self, m: Measured) -> bool:
+        """Whether it is nearer to the truth than the reference is: the difference of both is then
+        less than twice the reference's own error, and says little of the candidate's."""
+        own = self.truth.own_mse(self.region)
+        return own > 0 and error_of(m, self.region, "mse").mean < 2 * own
+
+    def _split(self, m: Measured, region: str) -> tuple[float, float]:
+        assert m.moments is not None
+        where = self.truth.region(region)
+        return bias_and_variance(m.moments, self.truth.mean, self.truth.variance, where)
+
+    def point(self, m: Measured) -> Point:
+        """Median time in milliseconds, mean error."""
+        return spread(m.ms).median, error_of(m, self.region, self.measure).mean
+
+    @property
+    def ranked(self) -> list[Measured]:
+        return [m for m in self.measured if not self.better(m) and isfinite(self.point(m)[1])]
+
+    @property
+    def front(self) -> list[Measured]:
+        """The settings that no other one beats in time and error, by growing time."""
+        usable = self.ranked
+        return [usable[i] for i in front([self.point(m) for m in usable])]
+
+    @property
+    def knee(self) -> Measured | None:
+        line = self.front
+        found = knee([self.point(m) for m in line])
+        return line[found] if found is not None else None
+
+    def only(self, knob: str) -> list[Measured]:
+        """The measurements that differ from the first in one knob at most, by its value."""
+        own = self.measured[0].candidate
+        value = own[knob]
+        if value is None:
+            return []
+        found = [m for m in self.measured if m.candidate.but(knob, value) == own]
+        return sorted(found, key=lambda m: float(m.candidate[knob] or 0))
+
+    @property
+    def halving(self) -> float | None:
+        """The factor of time by which half the error costs: from error ~ time^p over the samples a
+        pixel, of their time beyond what a frame costs anyway (raster and the rest)."""
+        line = [m for m in self.only("spp") if not self.better(m)]
+        if len(line) < 2:
+            return None
+        costs = [sum(spread(m.stages[s]).median for s in ("trace", "shade")) for m in line]
+        errors = [self.point(m)[1] for m in line]
+        power = exponent(costs, errors)
+        return 2 ** (-1 / power) if power is not None and power < 0 else None
+
+    def setting(self, m: Measured, base: bool) -> SettingCost:
+        """A row of the report."""
+        times = spread(m.ms)
+        return SettingCost(
+            label=m.candidate.label,
+            values=dict(m.candidate.values),
+            base=base,
+            time=TimeSpread(median=times.median, range=(times.low, times.high)),
+            set_up_ms=m.set_up_ms,
+            build_ms=m.build_ms,
+            stages={name: spread(values).median for name, values in m.stages.items()},
+            passes=m.passes,
+            rays=m.rays,
+            pixels=m.pixels,
+            est_error=m.est_error,
+            nonfinite=m.nonfinite,
+            errors={region: self._errors(m, region) for region in self.regions},
+            on_front=any(m is other for other in self.front),
+            better_than_reference=self.better(m),
+        )
+
+    def _errors(self, m: Measured, region: str) -> RegionErrors:
+        bias2, variance = self._split(m, region)
+        found = {
+            name: estimate(error_of(m, region, name))
+            for name in MEASURES
+            if getattr(m.errors[region][0], name) is not None
+        }
+        return RegionErrors(
+            **found,
+            bias2=bias2 if isfinite(bias2) else None,
+            variance=variance if isfinite(variance) else None,
+        )
+
+    def for_error(self, most: float) -> tuple[Answer, Measured | None]:
+        """The cheapest setting whose error is at most ``most``, its interval included."""
+        points = [
+            (spread(m.ms).median, error_of(m, self.region, self.measure).high)
+            for m in self.measured
+        ]
+        found = at_error(points, most)
+        question = f"{self.measure} of the {self.region} at most {most:g}"
+        if found is None:
+            least = min(p[1] for p in points)
+            text = f"no setting reaches it; the most accurate reaches {least:.3g}"
+            return Answer(question=question, setting=None, text=text), None
+        return self._answer(question, self.measured[found])
+
+    def for_time(self, seconds: float) -> tuple[Answer, Measured | None]:
+        """The most accurate setting that takes at most ``seconds``, its interval included."""
+        points = [
+            (interval(m.ms).high, error_of(m, self.region, self.measure).mean)
+            for m in self.measured
+        ]
+        found = at_time(points, seconds * 1000)
+        question = f"a frame in at most {seconds:g} s"
+        if found is None:
+            least = min(p[0] for p in points)
+            text = f"no setting is so fast; the fastest takes {least / 1000:.3g} s"
+            return Answer(question=question, setting=None, text=text), None
+        return self._answer(question, self.measured[found])
+
+    def _answer(self, question: str, m: Measured) -> tuple[Answer, Measured]:
+        time, value = self.point(m)
+        text = f"{m.candidate.label}: {time:.0f} ms, {self.measure} {value:.3g}"
+        return Answer(question=question, setting=m.candidate.label, text=text), m
+
+    def answers(self) -> list[Answer]:
+        """Equal time and equal error against the project as it is, from what was measured."""
+        own = self.measured[0]
+        time, value = self.point(own)
+        points = [self.point(m) for m in self.measured]
+        found = []
+        as_fast, as_good = at_time(points, time), at_error(points, value)
+        if as_fast is not None:
+            question = f"at equal time ({time:.0f} ms), the most accurate"
+            found.append(self._answer(question, self.measured[as_fast])[0])
+        if as_good is not None:
+            question = f"at equal error ({self.measure} {value:.3g}), the fastest"
+            found.append(self._answer(question, self.measured[as_good])[0])
+        return found
+
+    def verify_error(self, m: Measured, most: float) -> Verified:
+        found = error_of(m, self.region, self.measure)
+        promise = f"{self.measure} of the {self.region} at most {most:g}"
+        return _verified(promise, m.candidate, found, most)
+
+    def verify_time(self, m: Measured, seconds: float) -> Verified:
+        found = interval([ms / 1000 for ms in m.ms])
+        return _verified(f"a frame in at most {seconds:g} s", m.candidate, found, seconds)
+
+    def notes(self) -> list[str]:
+        """What a reader must know to take the numbers right."""
+        found = []
+        for m in self.measured:
+            if m.nonfinite:
+                found.append(f"{m.candidate.label}: {m.nonfinite} pixels were not finite")
+            if self.better(m):
+                found.append(
+                    f"{m.candidate.label}: more accurate than the reference; not ranked. "
+                    "A larger --reference would tell"
+                )
+        return found
+
+
+def _verified(promise: str, candidate: Candidate, found: Interval, most: float) -> Verified:
+    return Verified(
+        promise=promise,
+        setting=candidate.label,
+        found=estimate(found),
+        kept=found.low <= most,
+    )

@@ -1,0 +1,197 @@
+"""Rendering a candidate several times: pictures, errors, times, rays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.accuracy.candidate import Candidate, Prepared, prepare
+from nau_py.accuracy.metrics import F64, Errors, Mask, measure
+from nau_py.accuracy.picture import enlarged, mask_of, picture
+from nau_py.accuracy.statistics import Moments
+from nau_py.graph.resource import WINDOW
+from nau_py.model.linked import Project
+from nau_py.model.pipeline import Pipeline
+from nau_py.passes.frame import RunOptions
+from nau_py.run.renderer import Frame, Renderer
+
+STAGES = ("raster", "trace", "shade", "build", "read_back", "other")
+"""Stages of a frame; ``set_up`` comes once, before the first."""
+Told = Callable[[float], None]
+"""Called with the part of the present frame that is done, 0 to 1."""
+
+
+@dataclass(slots=True)
+class Reference:
+    """``mean`` of several renders and the ``variance`` of that mean, float64 (h, w, 3); the pixels
+    of the project's ``mask``; ``spp`` in all; ``cached``: taken from an earlier run."""
+
+    mean: F64
+    variance: F64
+    mask: Mask | None
+    spp: int
+    label: str
+    cached: bool = False
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        return self.mean.shape[0], self.mean.shape[1]
+
+    def region(self, name: str) -> Mask:
+        """The pixels of ``picture`` or ``mask``."""
+        whole = np.ones(self.shape, bool)
+        return self.mask if name == "mask" and self.mask is not None else whole
+
+    def own_mse(self, name: str) -> float:
+        """Estimated mean squared error of the reference itself in a region."""
+        values = self.variance[self.region(name)]
+        values = values[np.isfinite(values)]
+        return float(values.mean()) if len(values) else float("nan")
+
+
+@dataclass(slots=True)
+class Measured:
+    """What several runs of a candidate gave. Times in milliseconds, a list entry a run."""
+
+    candidate: Candidate
+    ms: list[float] = field(default_factory=list)
+    stages: dict[str, list[float]] = field(default_factory=dict)
+    set_up_ms: float = 0.0
+    build_ms: float = 0.0
+    errors: dict[str, list[Errors]] = field(default_factory=dict)
+    nonfinite: int = 0
+    rays: dict[str, int] = field(default_factory=dict)
+    pixels: int = 0
+    est_error: float | None = None
+    moments: Moments | None = None
+    last: F64 | None = None
+    samples: NDArray[np.int32] | None = None
+    passes: dict[str, float] = field(default_factory=dict)
+    """Milliseconds of each pass that does not trace, last run."""
+    machine: dict[str, Any] = field(default_factory=dict)
+    effects: list[dict[str, Any]] = field(default_factory=list)
+
+
+def stage_times(report: dict[str, Any], capture_ms: float) -> dict[str, float]:
+    """The stages of a frame's report: passes that do not trace count as raster."""
+    found = dict.fromkeys(STAGES, 0.0)
+    frame = report["frames"][0]
+    for item in frame["passes"]:
+        if item["status"] != "run":
+            continue
+        stages = item.get("stages", {})
+        for name, ms in stages.items():
+            found[name] += ms
+        found["raster"] += item["ms"] - sum(stages.values())
+    found["read_back"] += capture_ms
+    found["other"] = max(frame["ms"] - sum(found.values()), 0.0)
+    return found
+
+
+class Bench:
+    """Renders candidates of one project and pipeline, always the same frame."""
+
+    def __init__(
+        self,
+        project: Project,
+        pipeline: Pipeline,
+        options: RunOptions,
+        size: tuple[int, int],
+        frame: int = 0,
+    ) -> None:
+        self.project, self.pipeline = project, pipeline
+        self.options, self.size, self.frame = options, size, frame
+
+    def _renderer(self, prepared: Prepared, told: Told) -> Renderer:
+        def progress(name: str, done: int, total: int) -> None:
+            told(done / max(total, 1))
+
+        return Renderer(
+            prepared.project,
+            self.pipeline.name,
+            size=prepared.size,
+            options=prepared.options,
+            progress=progress,
+        )
+
+    def prepared(self, candidate: Candidate) -> Prepared:
+        return prepare(self.project, self.pipeline, candidate, self.options, self.size)
+
+    def pictures(
+        self, candidate: Candidate, seeds: list[int], told: Callable[[int, float], None]
+    ) -> tuple[Moments, Mask | None]:
+        """Mean and variance of a render a seed, and the candidate's mask."""
+        prepared = self.prepared(candidate)
+        prepared.options.seed = seeds[0]
+        renderer = self._renderer(prepared, lambda part: told(done, part))
+        moments: Moments | None = None
+        mask: Mask | None = None
+        try:
+            for done, seed in enumerate(seeds):
+                frame = renderer.render(self.frame) if done == 0 else renderer.again(seed)
+                image = picture(frame, renderer.plan.output == WINDOW)
+                mask = mask_of(frame, self.pipeline)
+                moments = moments or Moments(image.shape)
+                moments.add(image)
+        finally:
+            renderer.close()
+        assert moments is not None
+        return moments, mask
+
+    def measure(
+        self,
+        candidate: Candidate,
+        reference: Reference,
+        runs: int,
+        first_seed: int,
+        told: Callable[[int, float], None],
+    ) -> Measured:
+        """Render once to warm up, then ``runs`` times, a seed each."""
+        prepared = self.prepared(candidate)
+        done = 0
+        renderer = self._renderer(prepared, lambda part: told(done, part))
+        found = Measured(candidate, moments=Moments(reference.mean.shape))
+        try:
+            warm = renderer.render(self.frame)
+            found.set_up_ms = warm.report["setup_ms"]
+            found.build_ms = stage_times(warm.report, 0.0)["build"]
+            found.machine = warm.report["machine"]
+            for run in range(runs):
+                done = run + 1
+                told(done, 0.0)
+                frame = renderer.again(first_seed + run)
+                self._note(found, frame, renderer, reference)
+            told(runs + 1, 0.0)
+        finally:
+            renderer.close()
+        return found
+
+    def _note(
+        self, found: Measured, frame: Frame, renderer: Renderer, reference: Reference
+    ) -> None:
+        report = frame.report
+        image = enlarged(picture(frame, renderer.plan.output == WINDOW), reference.shape)
+        found.last, found.samples = image, frame.samples
+        assert found.moments is not None
+        found.moments.add(image)
+        found.nonfinite += int((~np.isfinite(image).all(axis=2)).sum())
+        for region in ("picture", "mask"):
+            errors = measure(image, reference.mean, reference.region(region))
+            found.errors.setdefault(region, []).append(errors)
+        found.ms.append(report["frames"][0]["ms"])
+        for name, ms in stage_times(report, renderer.capture_ms).items():
+            found.stages.setdefault(name, []).append(ms)
+        found.rays = report["totals"]["rays"]
+        found.effects = report["effects"]
+        found.passes = {
+            p["name"]: p["ms"]
+            for p in report["frames"][0]["passes"]
+            if p["status"] == "run" and "stages" not in p
+        }
+        for item in report["frames"][0]["passes"]:
+            if "est_error" in item:
+                found.est_error, found.pixels = item["est_error"], item["pixels"]

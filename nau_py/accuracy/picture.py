@@ -1,0 +1,54 @@
+"""Frames as the pictures that are compared."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PIL import Image
+
+from nau_py.accuracy.metrics import F64, Mask
+from nau_py.model.knob import traced
+from nau_py.model.pipeline import Pipeline
+from nau_py.model.raytrace import component
+
+if TYPE_CHECKING:
+    from nau_py.run.renderer import Frame
+
+
+def picture(frame: Frame, shown: bool) -> F64:
+    """RGB of a frame, float64 (h, w, 3). ``shown``: by a window, which clamps to 0..1."""
+    values = frame.image.astype(np.float64)
+    if frame.image.dtype.kind in "iu":
+        values /= float(np.iinfo(frame.image.dtype).max)
+    if values.shape[2] < 3:
+        values = np.repeat(values[:, :, :1], 3, axis=2)
+    values = values[:, :, :3]
+    return np.clip(values, 0.0, 1.0) if shown else values
+
+
+def enlarged(image: F64, shape: tuple[int, int]) -> F64:
+    """``image`` at (height, width), interpolated bilinearly where it has another size."""
+    if image.shape[:2] == shape:
+        return image
+    size = shape[1], shape[0]
+    planes = [
+        np.asarray(
+            Image.fromarray(np.ascontiguousarray(image[:, :, k], np.float32)).resize(
+                size, Image.Resampling.BILINEAR
+            )
+        )
+        for k in range(image.shape[2])
+    ]
+    return np.stack(planes, axis=2).astype(np.float64)
+
+
+def mask_of(frame: Frame, pipeline: Pipeline) -> Mask | None:
+    """The pixels that the mask of the raytrace pass selects, (h, w), row 0 at the top; None
+    without a mask."""
+    for pass_ in traced(pipeline.passes):
+        source = pass_.mask
+        values = frame.targets.get(source.texture or "") if source else None
+        if source is not None and values is not None:
+            return np.asarray(values[:, :, component(source.mask, values.shape[2])] > 0)
+    return None

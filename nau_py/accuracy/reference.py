@@ -1,0 +1,146 @@
+"""References: many samples a pixel, kept from run to run by what they depend on."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import nau_py.version
+from nau_py.accuracy.candidate import Candidate
+from nau_py.accuracy.measure import Bench, Reference
+from nau_py.files import write_bytes
+from nau_py.lint.walk import nodes
+from nau_py.model.knob import traced
+from nau_py.model.linked import Project
+from nau_py.model.node import Attr, file_key
+from nau_py.paths import resolve
+
+BATCHES = 2
+"""Renders with different seeds that a reference is the mean of: from their difference its own
+error is known."""
+FIRST_SEED = 1_000_003
+"""Far from the seeds of candidates, so that no candidate is a part of the reference."""
+KEPT = 24
+"""References in the cache; the oldest go."""
+
+
+def cache_folder() -> Path:
+    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    return Path(base) / "nau_py" / "references"
+
+
+def files_of(project: Project) -> list[Path]:
+    """Every file that a picture of ``project`` depends on, sorted: project, libraries, and what
+    they name; of models, programs and scripts all that lies in their folders."""
+    found = {Path(p).resolve() for p in project.sources}
+    for node in nodes(project):
+        for name, marker in node.markers().items():
+            value = getattr(node, name)
+            if not isinstance(marker, Attr) or not marker.file or not isinstance(value, str):
+                continue
+            folder = Path(node.where(file_key(name, marker)).file or ".").parent
+            path = resolve(folder, value).best
+            if path is None or not path.exists():
+                continue
+            found.add(path.resolve())
+            if marker.file in ("model", "program", "script"):
+                found |= set(_around(path.resolve(), marker.file))
+    return sorted(p for p in found if p.is_file())
+
+
+def _around(path: Path, kind: str) -> Iterator[Path]:
+    for other in path.parent.rglob("*"):
+        if other.is_file() and (kind == "model" or other.suffix in (".py", ".lua")):
+            yield other
+
+
+def content_key(bench: Bench, candidate: Candidate, spp: int, device: str) -> str:
+    """What the reference depends on, as a hash: files, settings, size, frame, this package, the
+    OpenGL driver."""
+    digest = hashlib.sha256()
+    said = (
+        nau_py.version.__version__,
+        device,
+        bench.pipeline.name,
+        bench.size,
+        bench.frame,
+        candidate.values,
+        spp,
+        BATCHES,
+        bench.options.seed,
+    )
+    digest.update(repr(said).encode())
+    package = Path(nau_py.version.__file__).parent
+    for path in [*sorted(package.rglob("*.py")), *files_of(bench.project)]:
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
+def reference(
+    bench: Bench,
+    candidate: Candidate,
+    spp: int,
+    device: str,
+    told: Callable[[float], None],
+    keep: bool = True,
+) -> Reference:
+    """Render ``candidate`` with ``spp`` samples a pixel in all, or take it from the cache."""
+    path = cache_folder() / f"{content_key(bench, candidate, spp, device)}.npz"
+    rays = bool(traced(bench.pipeline.passes))
+    label = candidate.but("spp", spp).label if rays else candidate.label
+    batch = candidate.but("spp", -(-spp // BATCHES)) if rays else candidate
+    if keep and path.is_file():
+        found = _load(path, spp, label)
+        if found is not None:
+            told(1.0)
+            return found
+    seeds = [FIRST_SEED + bench.options.seed + k for k in range(BATCHES)]
+    moments, _ = bench.pictures(batch, seeds, lambda done, part: told((done + part) / BATCHES))
+    own = Candidate((("spp", 1), ("mask", "project"))) if candidate["mask"] else None
+    mask = bench.pictures(own, [0], lambda done, part: None)[1] if own else None
+    made = Reference(moments.mean, moments.variance / BATCHES, mask, spp, label)
+    if keep:
+        _save(path, made)
+    return made
+
+
+def _load(path: Path, spp: int, label: str) -> Reference | None:
+    try:
+        with np.load(path) as data:
+            mask = data.get("mask")
+            return Reference(
+                data["mean"].astype(np.float64),
+                data["variance"].astype(np.float64),
+                mask,
+                spp,
+                label,
+                cached=True,
+            )
+    except (OSError, ValueError, KeyError, EOFError):
+        return None  # it is rendered anew, and written over
+
+
+def _save(path: Path, made: Reference) -> None:
+    """Keep a reference; where that cannot be, the next run renders it again."""
+    stream = io.BytesIO()
+    arrays: dict[str, Any] = {
+        "mean": made.mean.astype(np.float32),
+        "variance": made.variance.astype(np.float32),
+    }
+    if made.mask is not None:
+        arrays["mask"] = made.mask
+    np.savez(stream, **arrays)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_bytes(path, stream.getvalue())
+        old = sorted(path.parent.glob("*.npz"), key=lambda p: p.stat().st_mtime)[:-KEPT]
+        for other in old:
+            other.unlink(missing_ok=True)
+    except OSError:
+        return

@@ -1,0 +1,108 @@
+"""What repeated runs say: means with intervals, bias and variance, rates of convergence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import log, sqrt
+
+import numpy as np
+
+from nau_py.accuracy.metrics import F64, Mask
+
+_T95 = (
+    12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228,
+    2.201, 2.179, 2.160, 2.145, 2.131, 2.120, 2.110, 2.101, 2.093, 2.086,
+    2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042,
+)  # fmt: skip
+"""Two-sided 95 % quantiles of Student's t for 1 to 30 degrees of freedom."""
+NORMAL95 = 1.960
+
+
+def t95(degrees: int) -> float:
+    """The two-sided 95 % quantile of Student's t; beyond 30 degrees a little too wide."""
+    if degrees < 1:
+        return float("inf")
+    return _T95[degrees - 1] if degrees <= len(_T95) else _T95[-1]
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A mean and its 95 % confidence interval."""
+
+    mean: float
+    low: float
+    high: float
+
+
+def interval(values: Sequence[float]) -> Interval:
+    """Mean of ``values`` with Student's 95 % interval; without one for a single value."""
+    data = np.asarray(values, np.float64)
+    mean = float(data.mean())
+    if len(data) < 2:
+        return Interval(mean, mean, mean)
+    half = t95(len(data) - 1) * float(data.std(ddof=1)) / sqrt(len(data))
+    return Interval(mean, mean - half, mean + half)
+
+
+@dataclass(frozen=True, slots=True)
+class Spread:
+    """Median, least and greatest of several times, milliseconds."""
+
+    median: float
+    low: float
+    high: float
+
+
+def spread(values: Sequence[float]) -> Spread:
+    data = np.asarray(values, np.float64)
+    return Spread(float(np.median(data)), float(data.min()), float(data.max()))
+
+
+class Moments:
+    """Running mean and squared deviations of pictures (Welford 1962)."""
+
+    def __init__(self, shape: tuple[int, ...]) -> None:
+        self.number = 0
+        self.mean: F64 = np.zeros(shape)
+        self._squares: F64 = np.zeros(shape)
+
+    def add(self, image: F64) -> None:
+        self.number += 1
+        change = image - self.mean
+        self.mean += change / self.number
+        self._squares += change * (image - self.mean)
+
+    @property
+    def variance(self) -> F64:
+        """Sample variance of each value; nan below two pictures."""
+        if self.number < 2:
+            return np.full_like(self.mean, np.nan)
+        return self._squares / (self.number - 1)
+
+
+def bias_and_variance(
+    runs: Moments, reference: F64, reference_variance: F64, where: Mask
+) -> tuple[float, float]:
+    """(bias², variance) of one run, means over the chosen pixels; MSE = bias² + variance.
+
+    The mean of n runs is off by bias, by variance / n, and by the error of the reference: both are
+    taken off, so that noise does not count as bias. Below zero is zero.
+    """
+    if not where.any():
+        return float("nan"), float("nan")
+    variance = runs.variance[where]
+    if runs.number < 2:
+        return float("nan"), float("nan")
+    squared = (runs.mean[where] - reference[where]) ** 2
+    bias = squared - variance / runs.number - reference_variance[where]
+    return max(float(bias.mean()), 0.0), float(variance.mean())
+
+
+def exponent(costs: Sequence[float], errors: Sequence[float]) -> float | None:
+    """p of error ~ cost^p by least squares in logarithms; None where nothing can be fitted."""
+    pairs = [(log(c), log(e)) for c, e in zip(costs, errors) if c > 0 and e > 0]
+    if len({x for x, _ in pairs}) < 2:
+        return None
+    x, y = np.array(pairs).T
+    return float(np.polyfit(x, y, 1)[0])

@@ -1,0 +1,68 @@
+"""What a project says about accuracy and time: the knobs to turn, and their ladders.
+
+A knob is called by a short name (:data:`KNOBS`), or by what it turns: ``PASS/ATTRIBUTE`` for an
+attribute of a pass, ``PASS/SELECTOR/ATTRIBUTE`` for one of a selector of a mask pass.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from pydantic import Field
+
+from nau_py.model.node import Attr, Items, Node
+from nau_py.model.values import DataType
+
+UINT = DataType.UINT
+
+
+class Knob(Node):
+    """Something that can be had more or less accurate, and the values to try."""
+
+    name: Annotated[str | None, Attr(doc="Knob, or what it turns.", required=True)] = None
+    values: Annotated[str | None, Attr(doc="Values, cheapest first.", required=True)] = None
+
+
+class Accuracy(Node):
+    """What `nau-cost` measures when it is not told otherwise."""
+
+    pipeline: Annotated[
+        str | None, Attr(doc="Pipeline; default the project's.", ref="pipeline")
+    ] = None
+    reference: Annotated[int | None, Attr(UINT, "Samples a pixel of the reference.")] = None
+    runs: Annotated[int | None, Attr(UINT, "Runs of each setting, a seed each; default 5.")] = None
+    combine: Annotated[
+        str | None,
+        Attr(doc="Each knob by itself (default), or every combination.", values=("each", "all")),
+    ] = None
+    knobs: Annotated[list[Knob], Items(Knob, "knob")] = Field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class KnobKind:
+    """A knob by its short name. ``attribute``: that of the raytrace pass that it sets; ``words``:
+    its values, cheapest first, where they are no numbers."""
+
+    doc: str
+    attribute: str = ""
+    words: tuple[str, ...] = ()
+    low: float = 0.0
+    high: float = float("inf")
+
+
+MASKS = ("none", "project", "all")
+FILTERS = ("nearest", "linear")
+FORMATS = ("8-bit", "half", "float")
+KNOBS: dict[str, KnobKind] = {
+    "spp": KnobKind("Samples a pixel.", "RAYS_PER_PIXEL"),
+    "depth": KnobKind("Longest chain of rays.", "MAX_DEPTH"),
+    "light-samples": KnobKind("Shadow rays a sample and area light.", "LIGHT_SAMPLES"),
+    "target-error": KnobKind(
+        "Estimated error at which pixels stop; spp is the most.", "TARGET_ERROR"
+    ),
+    "mask": KnobKind("Trace no pixel, those of the project's mask, or all.", words=MASKS),
+    "scale": KnobKind("Size of the picture that is rendered and then enlarged.", low=0.01, high=1),
+    "filter": KnobKind("Filter of the materials' textures.", words=FILTERS),
+    "format": KnobKind("Texels of the traced target and of the window.", words=FORMATS),
+}
