@@ -20,6 +20,7 @@ from nau_py.accuracy.reference import reference
 from nau_py.accuracy.refine import refine
 from nau_py.accuracy.report import SCHEMA, Answer, CostReport, ReferenceFacts, Verified
 from nau_py.accuracy.statistics import interval
+from nau_py.accuracy.worth import worth
 from nau_py.diagnostic import error
 from nau_py.errors import ProjectError
 from nau_py.model.knob import traced
@@ -151,6 +152,11 @@ def cost(
         sweep.found.append(sweep.measure(candidate, weight))
     judge = Judge(asked.measure, region, truth, sweep.found)
     answers, verified, wanted = _targets(asked, sweep, judge, turned, samples)
+    effects = (
+        worth(bench, start, runs, lambda what, part: meter.told(what, 0.0, 0.0))
+        if asked.effects
+        else []
+    )
     knee = judge.knee
     report = CostReport(
         schema=SCHEMA,
@@ -173,7 +179,7 @@ def cost(
         halving=judge.halving,
         answers=[*judge.answers(), *answers],
         verified=verified,
-        effects=[],
+        effects=effects,
         notes=judge.notes(),
     )
     return CostRun(report, truth, sweep.found, wanted)

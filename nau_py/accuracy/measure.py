@@ -106,6 +106,10 @@ class Bench:
         self.project, self.pipeline = project, pipeline
         self.options, self.size, self.frame = options, size, frame
 
+    def renderer(self, candidate: Candidate) -> Renderer:
+        """A renderer of a candidate."""
+        return self._renderer(self.prepared(candidate), lambda part: None)
+
     def _renderer(self, prepared: Prepared, told: Told) -> Renderer:
         def progress(name: str, done: int, total: int) -> None:
             told(done / max(total, 1))

@@ -37,6 +37,17 @@ def _parameters(texts: list[str]) -> dict[str, str]:
     return found
 
 
+def _effects(text: str | None) -> str | None:
+    from nau_py.model.effects import wanted
+
+    try:
+        if text is not None:
+            wanted(text)
+    except ValueError as problem:
+        raise typer.BadParameter(str(problem)) from None
+    return text
+
+
 def _numbered(path: Path) -> bool:
     return re.search(r"%0?\d*d", path.name) is not None
 
@@ -58,7 +69,12 @@ def run(
     threads: Annotated[int, typer.Option(min=0, help="Threads; 0: one a core.")] = 0,
     targets: Annotated[Path | None, typer.Option(help="Folder for every target.")] = None,
     report: Annotated[Path | None, typer.Option(help="JSON report.")] = None,
-    explain: Annotated[bool, typer.Option(help="Say why passes are left out.")] = False,
+    explain: Annotated[
+        bool, typer.Option(help="Say why passes and effects are simulated or left out.")
+    ] = False,
+    effects: Annotated[
+        str | None, typer.Option(help="auto, all, none, or a list: what is simulated.")
+    ] = None,
     allow_programs: Annotated[
         list[Path] | None, typer.Option(help="Folder to load ray programs from.")
     ] = None,
@@ -97,6 +113,7 @@ def run(
         tuple(str(p) for p in allow_programs or ()),
         no_programs,
         check_numerics=check_numerics,
+        effects=_effects(effects),
     )
 
     def work() -> int:

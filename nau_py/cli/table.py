@@ -59,8 +59,43 @@ def print_table(report: dict[str, Any], explain: bool) -> None:
         console.print(f"no frame after {frame['index']}: {report['ended']}")
     if report["nonfinite"]:
         console.print(f"{report['nonfinite']:,} samples were not finite")
+    if explain:
+        console.print(_effects(report["effects"]))
     for item in frame["passes"]:
         for note in item.get("notes", []):
             console.print(f"{item['name']}: {note}")
         if explain and item["status"] != "run":
             console.print(f"{item['name']} is left out: {item['reason']}")
+
+
+def _effects(effects: list[dict[str, Any]]) -> Table:
+    """What each effect is called for by, and whether it is simulated."""
+    table = Table(title="effects", title_justify="left")
+    for name in ("effect", "called for by", "in view", "status"):
+        table.add_column(name)
+    for name in ("rays", "rays saved", "ms saved"):
+        table.add_column(name, justify="right")
+    table.add_column("difference to all effects")
+    for e in effects:
+        first = [f"{c['what']} ({_short(c['where'])})" for c in e["by"][:2]]
+        more = len(e["by"]) - len(first)
+        by = ", ".join(first) + (f" and {more} more" if more > 0 else "")
+        status = e["status"].replace("_", " ")
+        why = f": {e['reason']}" if "reason" in e else ""
+        note = f"; {e['note']}" if "note" in e else ""
+        table.add_row(
+            e["effect"],
+            by,
+            "yes" if e["in_view"] and e["called_for"] else "",
+            status + why + note,
+            _count(e["rays"]),
+            _count(e["rays_saved"]),
+            f"{e['ms_saved']:,.0f}" if e["rays_saved"] else "",
+            e["bound"],
+        )
+    return table
+
+
+def _short(where: str) -> str:
+    """``folder/file:line:col`` without the folder."""
+    return where.rsplit("/", 1)[-1]

@@ -80,6 +80,13 @@ class RayMaterial(Node):
         default_factory=list
     )
 
+    def program(self, ray_type: str, kind: str) -> RayProgram | None:
+        """The program of a kind for a ray type."""
+        for group in self.rayTypes:
+            if group.name == ray_type:
+                return next((p for p in group.programs if p.type == kind), None)
+        return None
+
 
 class EntryPoint(Node):
     """Where a launch begins, and what runs when it fails."""

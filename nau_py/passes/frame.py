@@ -30,7 +30,8 @@ class RunOptions:
     makes any value that is not finite an error. ``mask``: ``project``, or ``none`` or ``all`` to
     write 0 or 1 into the mask of the raytrace pass. ``texture_filter``: ``NEAREST`` or ``LINEAR``
     for image textures whose filter the project leaves open. ``window_format``: the window's texel
-    format; ``RGBA32F`` keeps what 8 bits would round and clamp.
+    format; ``RGBA32F`` keeps what 8 bits would round and clamp. ``effects``: ``auto``, ``all``,
+    ``none`` or a list, in the place of the project's.
     """
 
     samples: int | None = None
@@ -43,6 +44,7 @@ class RunOptions:
     mask: str = "project"
     texture_filter: str = ""
     window_format: str = "RGBA"
+    effects: str | None = None
 
 
 @dataclass(slots=True)
@@ -68,6 +70,8 @@ class PassRecord:
     stages: dict[str, float] = field(default_factory=dict)
     taken: NDArray[np.int32] | None = None
     error: NDArray[np.float32] | None = None
+    effects: list[dict[str, Any]] = field(default_factory=list)
+    """What a raytrace pass simulates and leaves out, for the report."""
 
 
 Progress = Callable[[str, int, int], None]

@@ -36,6 +36,7 @@ class RaytraceClass:
 
     def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
         from nau_py.passes.drawing import pass_value, process, target_and_rect
+        from nau_py.passes.effects import effect_data
         from nau_py.passes.tracing import (
             force_mask,
             read_inputs,
@@ -54,9 +55,6 @@ class RaytraceClass:
         frame.rect = rect
         process(pass_.preProcess, frame)
         stages = Stages(record)
-        state = tracing_state(pass_, frame.session)
-        state.update(pass_)
-        stages.end("build")
         options = frame.session.options
         if options.mask != "project":
             force_mask(pass_, frame, float(options.mask == "all"))
@@ -65,6 +63,13 @@ class RaytraceClass:
         mask = read_mask(pass_, inputs)
         width, height = target.width, target.height
         pixels = select(mask, width, height)
+        if not len(pixels):
+            store_colours(target, pixels, np.zeros((0, 4), np.float32))
+            process(pass_.postProcess, frame)
+            record.status, record.reason = "left_out", "its mask selects no pixel"
+            return
+        state = tracing_state(pass_, frame.session)
+        state.update(pass_)
         scene = state.scene(pass_, frame, target, inputs)
 
         def value(name: str) -> float:
@@ -90,6 +95,9 @@ class RaytraceClass:
             state.label,
             service=state.service,
         )
+        if not state.loaded:
+            work.load()
+            state.loaded = True
         stages.end("build")
         progress = frame.session.progress
 
@@ -111,6 +119,9 @@ class RaytraceClass:
         record.error = _scattered(result.estimate.error, pixels, (height, width), np.float32)
         process(pass_.postProcess, frame)
         record.pixels = len(pixels)
+        record.effects = effect_data(
+            state.decisions, state.facts, state.simulated, result.counts, record
+        )
         record.rays = dict(result.counts.rays)
         record.avoided = width * height * samples - result.taken
         record.est_error = result.est_error

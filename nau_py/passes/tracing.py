@@ -18,6 +18,7 @@ from nau_py.model.raytrace import Program, RaytracePass, RayVariable, component
 from nau_py.model.raytrace import RayMaterial as RayMaterialNode
 from nau_py.model.texture import Texture
 from nau_py.passes.drawing import camera_context, pass_value
+from nau_py.passes.effects import decisions, pass_facts
 from nau_py.passes.frame import FrameContext, Session
 from nau_py.passes.material_shading import MaterialShading
 from nau_py.paths import resolve as resolve_path
@@ -49,6 +50,7 @@ class TracingState:
         self.accelerator: Accelerator = Accelerator(self.geometry)
         self._moves, self._moved = session.world.moves, session.world.moved
         self.texels = TexelStore()
+        self.loaded = False
         self._kept: tuple[bytes, Estimate] | None = None
         self._textures: dict[TextureBinding, RayTexture | None] = {}
         self.mapped = session.pass_materials(pass_)
@@ -96,7 +98,7 @@ class TracingState:
     def _render_material(self, name: str) -> RenderMaterial | None:
         return self.mapped[name] or self.session.world.materials.get(DEFAULT_LIBRARY, name)
 
-    def _entry(self, pass_: RaytracePass, name: str) -> RayMaterialNode | None:
+    def entry(self, pass_: RaytracePass, name: str) -> RayMaterialNode | None:
         """The programs of a material: its exact entry, a prefix's, else the default's (7.1)."""
         mapped = self.mapped[name]
         names = {name}
@@ -117,20 +119,21 @@ class TracingState:
     def _bind(self, pass_: RaytracePass, loader: ProgramLoader) -> ProgramTable:
         table: ProgramTable = {}
         count = len(self.geometry.materials)
-        entries = [self._entry(pass_, name) for name in self.geometry.materials]
+        entries = [self.entry(pass_, name) for name in self.geometry.materials]
         for ray_type in pass_.ray_types:
             for kind in (CLOSEST_HIT, ANY_HIT):
                 table[ray_type, kind] = [None] * count
             for index, (name, entry) in enumerate(zip(self.geometry.materials, entries)):
                 for kind in (CLOSEST_HIT, ANY_HIT):
-                    node = _program(entry, ray_type, kind)
+                    node = entry.program(ray_type, kind) if entry else None
                     if node is not None:
                         label = (
                             f"{self.label}, material '{name}', {kind} program '{node.proc}' of "
                             f"ray type '{ray_type}'"
                         )
                         table[ray_type, kind][index] = loader.load(node, label, kind)
-            miss = _program(pass_.rtDefaultMaterial, ray_type, MISS)
+            default = pass_.rtDefaultMaterial
+            miss = default.program(ray_type, MISS) if default else None
             if miss is not None:
                 label = f"{self.label}, MISS program '{miss.proc}' of ray type '{ray_type}'"
                 table[ray_type, MISS] = [loader.load(miss, label, MISS)]
@@ -176,6 +179,12 @@ class TracingState:
             context.material = render
             materials.append(self._material(pass_, name, render, context))
         context.material = None
+        depth = int(pass_value(frame.project, pass_, "MAX_DEPTH"))
+        entries = [self.entry(pass_, name) for name in self.geometry.materials]
+        self.facts = pass_facts(
+            pass_, frame.project, entries, materials, frame.lights(pass_), frame.camera, depth
+        )
+        self.decisions, self.simulated = decisions(self.facts, frame)
         return Scene(
             self.geometry,
             self.accelerator,
@@ -186,11 +195,12 @@ class TracingState:
             inputs,
             pass_.ray_types,
             TraceSettings(
-                int(pass_value(frame.project, pass_, "MAX_DEPTH")),
+                depth,
                 frame.session.options.seed,
                 int(pass_value(frame.project, pass_, "LIGHT_SAMPLES")),
                 float(pass_value(frame.project, pass_, "OCCLUSION_DISTANCE")),
                 frame.rect.clear if target.name == "window" else target.clear,
+                self.simulated,
             ),
             self.texels,
         )
@@ -216,13 +226,6 @@ def tracing_state(pass_: RaytracePass, session: Session) -> TracingState:
     found = session.tracers[key]
     assert isinstance(found, TracingState)
     return found
-
-
-def _program(node: RayMaterialNode | None, ray_type: str, kind: str) -> Program | None:
-    for group in node.rayTypes if node else []:
-        if group.name == ray_type:
-            return next((p for p in group.programs if p.type == kind), None)
-    return None
 
 
 def _loader(session: Session, provided: dict[tuple[str, str], Callable[..., Any]]) -> ProgramLoader:

@@ -177,6 +177,13 @@ class Work:
         tracer.dropped(self.label, int(bad_samples[0]), int(bad_samples[1]))
         return tracer.counts
 
+    def load(self) -> None:
+        """Load or compile the kernels of a launch; no program of the project is run."""
+        if self.scene.tables.record["asks_python"][0]:
+            Tracer(self.scene).load()
+        if self.generate.code != t.USER:
+            self.tile(np.zeros(0, kernel.ITEM), Estimate.empty(0), slice(0, 0), 0)
+
     def _rule(self) -> int:
         single = self.settings.samples == 1 and not self.settings.progressive
         if single and self.settings.sampler != "RANDOM":
@@ -187,7 +194,9 @@ class Work:
         return kernel.JITTER if self.settings.sampler == "RANDOM" else kernel.SOBOL
 
     def _compiled(self, tracer: Tracer, items: NDArray[Any], radiance: F32) -> None:
-        lens, rule = int(self.generate.code == THIN_LENS), self._rule()
+        simulated = self.scene.settings.simulated
+        lens = int(self.generate.code == THIN_LENS and simulated.lens)
+        rule = self._rule()
         side = max(round(self.settings.samples**0.5), 1)
         if not self.scene.tables.record["asks_python"][0]:
             tracer.march(self.camera, (lens, rule, side), self.width, items, radiance)

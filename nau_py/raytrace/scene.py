@@ -16,8 +16,9 @@ from nau_py.raytrace.geometry import RayGeometry
 from nau_py.raytrace.hits import RayLight, RayMaterial
 from nau_py.raytrace.kernels import tables as t
 from nau_py.raytrace.kernels.bsdf import albedo_table
-from nau_py.raytrace.kernels.codes import GLOSSY, NONE, TRANSPARENCY
+from nau_py.raytrace.kernels.codes import GLOSSY, NONE, ONE_SIDED, TRANSPARENCY
 from nau_py.raytrace.programs import BoundProgram
+from nau_py.raytrace.simulated import Simulated
 from nau_py.raytrace.texture import RayTexture
 from nau_py.raytrace.vectors import F32
 from nau_py.scene.mesh import F64
@@ -36,6 +37,7 @@ class TraceSettings:
     light_samples: int = 1
     occlusion_distance: float = np.inf
     clear_color: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
+    simulated: Simulated = field(default_factory=Simulated)
 
 
 class Tables:
@@ -127,10 +129,11 @@ def _material(material: RayMaterial, store: TexelStore) -> NDArray[Any]:
     return made
 
 
-def _light(light: RayLight, centre: F64) -> NDArray[Any]:
+def _light(light: RayLight, centre: F64, penumbra: bool) -> NDArray[Any]:
     made = np.zeros((), t.LIGHT)
     v = light.values
-    made["shape"] = t.SHAPES.index(str(v["SHAPE"][0]))
+    shape = t.SHAPES.index(str(v["SHAPE"][0]))
+    made["shape"] = t.POINT if shape >= t.RECTANGLE and not penumbra else shape
     made["position"] = np.array([float(x) for x in v["POSITION"][:3]]) - centre
     made["direction"] = direction = np.array([float(x) for x in v["NORMALIZED_DIRECTION"][:3]])
     made["colour"] = [float(x) for x in v["COLOR"][:3]]
@@ -179,15 +182,23 @@ def make_tables(scene: Scene) -> Tables:
     """Everything that the kernels read of ``scene``."""
     geometry, types = scene.geometry, scene.ray_types
     count = max(len(scene.materials), 1)
+    simulated = scene.settings.simulated
     materials = np.zeros(count, t.MATERIAL)
     for index, material in enumerate(scene.materials):
         materials[index] = _material(material, scene.texels)
+    if not simulated.fluorescence:
+        materials["reradiation"] = 0
     codes = {k: np.zeros((len(types), count), np.int8) for k in (CLOSEST_HIT, ANY_HIT)}
     for kind, table in codes.items():
         for row, name in enumerate(types):
             for column, program in enumerate(scene.programs.get((name, kind), [])):
                 table[row, column] = program.code if program else 0
     closest, any_hit = codes[CLOSEST_HIT], codes[ANY_HIT]
+    left_out = any_hit != ONE_SIDED  # that is a matter of geometry
+    if simulated.transparency:
+        plain = np.isin(np.arange(count), list(simulated.opaque))
+        left_out &= plain[None, :] & (any_hit != t.USER)
+    any_hit[left_out] = NONE
     miss = np.zeros(len(types), np.int8)
     for row, name in enumerate(types):
         program = scene.program(name, MISS, 0)
@@ -203,7 +214,7 @@ def make_tables(scene: Scene) -> Tables:
     emitters, cdf, density = _emitters(geometry, materials)
     lights = np.zeros(len(scene.lights), t.LIGHT)
     for index, light in enumerate(scene.lights):
-        lights[index] = _light(light, geometry.centre)
+        lights[index] = _light(light, geometry.centre, simulated.penumbra)
     made = np.zeros(1, t.SCENE)
     made["standing"], made["moving"] = scene.accelerator.scene, scene.accelerator.moving
     made["first_moving"], made["material_count"] = geometry.first_moving, count
@@ -212,6 +223,8 @@ def make_tables(scene: Scene) -> Tables:
     made["max_depth"], made["shadow_type"] = scene.settings.max_depth, shadow
     made["light_samples"] = scene.settings.light_samples
     made["occlusion_distance"] = scene.settings.occlusion_distance
+    made["skipped"], made["caustics"] = simulated.bits, simulated.caustics
+    made["negligible"] = simulated.negligible
     made["background"] = scene.settings.clear_color
     return Tables(
         made,

@@ -42,6 +42,13 @@ class RayTexture:
         wide[..., 3] = 255
         return wide.reshape(-1)
 
+    @cached_property
+    def least_alpha(self) -> float:
+        """The least alpha that a sample can have, 0 to 1."""
+        least = float(self.rgba[3::4].min()) / 255
+        outside = "CLAMP_TO_BORDER" in (self.wrap_s, self.wrap_t)
+        return min(least, float(self.border[3])) if outside else least
+
     def record(self, offset: int) -> NDArray[np.void]:
         """The kernels' record of this texture, whose texels begin at ``offset``; shape (1,)."""
         made = np.zeros(1, TEXTURE)

@@ -47,7 +47,8 @@ _CODES = {name: code for code, name in enumerate(t.KINDS)}
 class RayCounts:
     """What one tile of work cost. ``sources``: for each program or pass that gave a value that is
     not finite, how many and the first pixel. ``cycles``: of the processor, and of them ``traced``
-    in Embree (0 where they cannot be counted)."""
+    in Embree (0 where they cannot be counted). ``skipped``: rays of effects that are left out, by
+    kind. ``viewed``: materials, by index, that primary rays met."""
 
     rays: dict[str, int] = field(default_factory=dict)
     nonfinite: int = 0
@@ -55,6 +56,8 @@ class RayCounts:
     sources: dict[str, tuple[int, int]] = field(default_factory=dict)
     cycles: int = 0
     traced: int = 0
+    skipped: dict[str, int] = field(default_factory=dict)
+    viewed: set[int] = field(default_factory=set)
 
     def add(self, kind: str, count: int) -> None:
         if count:
@@ -82,6 +85,9 @@ class RayCounts:
         self.cut_layers += other.cut_layers
         self.cycles += other.cycles
         self.traced += other.traced
+        for kind, count in other.skipped.items():
+            self.skipped[kind] = self.skipped.get(kind, 0) + count
+        self.viewed |= other.viewed
 
     @property
     def traced_share(self) -> float:
@@ -101,6 +107,7 @@ class Tracer:
         self._begun = 0
         self._named: dict[str, int] = {}
         self._rest = RayCounts()
+        self._viewed = np.zeros(max(len(scene.materials), 1), np.int32)
         self._lanes = np.zeros(1, _LANES)
         self._packet = np.zeros(PACKET_BYTES + ALIGNMENT, np.uint8)
         self._made = self._addresses()
@@ -110,6 +117,7 @@ class Tracer:
     def results(self, count: int) -> F32:
         """Room for a tile's results, zero, (count, 4); it and the counts begin anew."""
         self._counters[:] = 0
+        self._viewed[:] = 0
         self._begun = cycles_now()
         self._named.clear()
         self._rest = RayCounts()
@@ -125,6 +133,9 @@ class Tracer:
         found = RayCounts(sources=dict(self._rest.sources))
         for name, code in _CODES.items():
             found.add(name, int(self._counters[code]))
+            if skipped := int(self._counters[t.SKIPPED + code]):
+                found.skipped[name] = skipped
+        found.viewed = {int(k) for k in np.flatnonzero(self._viewed)}
         for name, count in self._named.items():
             found.add(name, count)
         found.nonfinite = self._rest.nonfinite + int(self._counters[t.NONFINITE])
@@ -132,6 +143,15 @@ class Tracer:
         found.traced = int(self._counters[t.IN_EMBREE])
         found.cycles = cycles_now() - self._begun if COUNTS_CYCLES else 0
         return found
+
+    def load(self) -> None:
+        """Load the kernels that follow rays, or compile them: no tile shall pay for it."""
+        none, record = np.empty(0, t.PATH), self.scene.tables.record
+        tile = self._tile(np.zeros((0, 4), np.float32))
+        advance(record, 0, none, tile)
+        vectors, words = np.zeros((0, 3), np.float32), np.zeros(0, np.uint32)
+        limit = np.array([np.inf], np.float32)
+        send(record, 0, vectors, vectors, limit, words, words, 1, t.PRIMARY, 0.0, tile)
 
     def dropped(self, source: str, count: int, pixel: int) -> None:
         """Note ``count`` samples that are not finite."""
@@ -196,9 +216,11 @@ class Tracer:
         query, counts = self._lanes["query"], self._counters.ctypes.data
         query["features"], query["context"] = -1, tile["query"] + np.uint64(CONTEXT)
         query["instance"], query["instance_primitive"] = -1, -1
-        query["filter"], query["counts"] = filter_address(), counts
+        query["counts"] = counts
+        if (self.scene.tables.arrays["has_any_hit"] != t.NOTHING).any():
+            query["filter"] = filter_address()  # compiled only where something is to be asked
         query["scene"] = self.scene.tables.record.ctypes.data
-        tile["counts"] = counts
+        tile["counts"], tile["viewed"] = counts, self._viewed.ctypes.data
         batch.prepare(tile)
         return tile
 

@@ -116,7 +116,7 @@ def make_report(
             "rays": rays,
             "rays_avoided": sum(r.avoided for r in all_records),
         },
-        "effects": [],
+        "effects": [e for _, _, records in frames for r in records for e in r.effects],
         "warnings": warnings,
         "nonfinite": sum(r.nonfinite for r in all_records),
     }

@@ -27,19 +27,23 @@ from nau_py.raytrace.kernels.embree import (
     whose,
 )
 from nau_py.raytrace.kernels.jit import cycles, inner
-from nau_py.raytrace.kernels.memory import f32, i8, i32, i64, put_i64
+from nau_py.raytrace.kernels.memory import f32, i8, i32, i64, put_i32, put_i64
 from nau_py.raytrace.kernels.scatter import absorb, pass_through
 from nau_py.raytrace.kernels.shade import add, defer, rgb
 from nau_py.raytrace.kernels.shadows import flush, see
 from nau_py.raytrace.kernels.tables import (
+    AMBIENT,
     CANDIDATE,
     CONTINUATION,
     CUT,
     HIT,
     LANES,
     MISSED,
+    PRIMARY,
     PYTHON,
     SHADE,
+    SHADOW,
+    SKIPPED,
     STACK,
     TRACE,
     USER,
@@ -52,7 +56,7 @@ from nau_py.raytrace.kernels.tables import (
     set_weight,
     weight_of,
 )
-from nau_py.raytrace.kernels.visibility import MAX_LAYERS, count, opacity, sound, spent
+from nau_py.raytrace.kernels.visibility import MAX_LAYERS, count, opacity, skips, sound, spent
 
 
 @inner
@@ -155,6 +159,8 @@ def arrive(scene: Any, tile: Any, ray_type: int, path: Any) -> bool:
     code = i8(scene.closest, at)
     if code == NONE:
         return False
+    if path.kind == PRIMARY:
+        put_i32(tile.viewed, i32(scene.owner, path.triangle), 1)
     if code == USER:
         defer(tile, path, HIT)
         return False
@@ -168,7 +174,10 @@ def look(scene: Any, tile: Any, ray_type: int, size: int) -> None:
     lanes = 0
     for which in range(size):
         path = path_at(tile.work, which)
-        if sound(tile, origin_of(path), heading_of(path)):
+        if skips(scene, int(path.kind)):
+            count(tile, SKIPPED + int(path.kind))
+            missed(scene, tile, ray_type, path)
+        elif sound(tile, origin_of(path), heading_of(path)):
             count(tile, int(path.kind))
             board(tile, path, lanes, which)
             lanes += 1
@@ -194,11 +203,17 @@ def step(scene: Any, tile: Any, ray_type: int, size: int) -> int:
             continue
         path.triangle = -1
         asks = i8(scene.visibility, ray_type) != 0
+        kind = int(path.kind)
+        if path.layers == 0 and skips(scene, kind):
+            count(tile, SKIPPED + kind)
+            if kind != SHADOW and kind != AMBIENT:
+                path.status = MISSED
+            continue
         too_deep = path.depth > scene.max_depth and not asks
         if too_deep or not sound(tile, origin_of(path), heading_of(path)):
             path.status = MISSED
         else:
-            count(tile, int(path.kind) if path.layers == 0 else CONTINUATION)
+            count(tile, kind if path.layers == 0 else CONTINUATION)
             board(tile, path, lanes, which)
             lanes += 1
     if lanes > 0:

@@ -48,6 +48,7 @@ from nau_py.raytrace.kernels.surface import (
     texel,
 )
 from nau_py.raytrace.kernels.tables import (
+    INDIRECT,
     diffuse_of,
     emission_of,
     heading_of,
@@ -57,6 +58,7 @@ from nau_py.raytrace.kernels.tables import (
     weight_of,
 )
 from nau_py.raytrace.kernels.vec import dot, minus, scaled, times
+from nau_py.raytrace.kernels.visibility import skips
 
 
 @inner
@@ -65,6 +67,8 @@ def emitted(scene: Any, tile: Any, path: Any, material: Any, face: V3) -> None:
     (multiple importance sampling, Veach 1997)."""
     e = emission_of(material)
     if e[0] == 0.0 and e[1] == 0.0 and e[2] == 0.0:
+        return
+    if scene.caustics == 0 and path.scattered != 0 and path.pdf == 0.0:
         return
     weight = 1.0
     area = f64(scene.emitter_pdf, path.triangle)
@@ -99,7 +103,9 @@ def emitter_light(
     if not (near > 0.0 and far > 0.0):
         return
     pdf = area * distance2 / far
-    factor = near / pdf * power(pdf, near * INVERSE_PI)
+    factor = near / pdf
+    if not skips(scene, INDIRECT):
+        factor *= power(pdf, near * INVERSE_PI)
     emission = emission_of(material_at(scene.materials, i32(scene.owner, triangle)))
     brought = scaled(times(brdf, emission), factor)
     light_term(scene, tile, ray_type, path, scene.lights_count, origin, to, 1.0, brought)
@@ -131,7 +137,7 @@ def shade(scene: Any, tile: Any, ray_type: int, code: int, path: Any) -> bool:
         if code == DIELECTRIC:
             return dielectric(scene, tile, path, owner, p, face, bound, normal)
         if code == MIRROR:
-            return mirror(path, p, face, bound, normal, specular_of(material))
+            return mirror(scene, path, p, face, bound, normal, specular_of(material))
         return glossy(scene, path, p, face, bound, normal, material)
     colour = rgb(texel(scene, material, triangle, u, v))
     albedo = times(rgb(diffuse_of(material)), colour)

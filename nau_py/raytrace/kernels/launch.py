@@ -101,6 +101,7 @@ def reset(path: Any) -> None:
     path.depth = 1
     path.layers = 0
     path.band = -1
+    path.scattered = 0
     path.kind = PRIMARY
     path.status = TRACE
 

@@ -36,8 +36,6 @@ from nau_py.raytrace.kernels.tables import (
 )
 from nau_py.raytrace.kernels.vec import basis, dot, in_frame, reflected
 
-NEGLIGIBLE = 1e-4
-"""Throughput below which specular chains end; what it leaves out is below that, too."""
 SPLIT_DEPTH = 4
 """Depth up to which a dielectric follows both directions; deeper ones follow one by chance."""
 ROULETTE_DEPTH = 4
@@ -85,9 +83,17 @@ def pass_through(scene: Any, path: Any) -> None:
 
 
 @inner
-def mirror(path: Any, position: V3, face: V3, bound: float, normal: V3, specular: V3) -> bool:
+def worth(scene: Any, throughput: float) -> bool:
+    """Whether a specular chain goes on with so much weight."""
+    return throughput > 0.0 and throughput >= scene.negligible
+
+
+@inner
+def mirror(
+    scene: Any, path: Any, position: V3, face: V3, bound: float, normal: V3, specular: V3
+) -> bool:
     """SPECULAR times the mirror direction. Returns whether the path goes on."""
-    going = tint(path, specular) >= NEGLIGIBLE
+    going = worth(scene, tint(path, specular))
     d = heading_of(path)
     direction = kept_above(reflected(d, normal), facing(face, d))
     path.pdf = 0.0
@@ -113,7 +119,7 @@ def glossy(
     roughness = min(max(float(material.roughness), 0.0), 1.0)
     alpha = roughness * roughness
     if alpha <= SMOOTH:
-        return mirror(path, position, face, bound, normal, specular)
+        return mirror(scene, path, position, face, bound, normal, specular)
     s, t = basis(normal)
     d = heading_of(path)
     w = (-dot(d, s), -dot(d, t), max(-dot(d, normal), 1e-4))
@@ -127,7 +133,7 @@ def glossy(
         specular[2] * weight * (1.0 + specular[2] * lost),
     )
     direction = in_frame(s, t, normal, out[0], out[1], out[2])
-    going = weight > 0.0 and tint(path, colour) >= NEGLIGIBLE
+    going = weight > 0.0 and worth(scene, tint(path, colour))
     if dot(direction, facing(face, d)) <= 0.0:
         going = False
     path.pdf = 0.0
@@ -158,6 +164,7 @@ def bounce(
     if not (dot(direction, facing(face, d)) > 0.0 and out[2] > 0.0):
         return False
     path.pdf = out[2] * INVERSE_PI
+    path.scattered = 1
     leave(path, position, face, bound, direction, INDIRECT)
     return True
 
@@ -311,10 +318,10 @@ def dielectric(
     if path.depth <= SPLIT_DEPTH and tile.top < STACK:
         other = path_at(tile.stack, tile.top)
         copy_path(other, path)
-        if tint(other, (share, share, share)) >= NEGLIGIBLE:
+        if worth(scene, tint(other, (share, share, share))):
             leave(other, position, face, bound, away, REFLECTION)
             tile.top += 1
-        going = tint(path, (1.0 - share, 1.0 - share, 1.0 - share)) >= NEGLIGIBLE
+        going = worth(scene, tint(path, (1.0 - share, 1.0 - share, 1.0 - share)))
     else:
         x, _ = sobol2(scene.seed, path.pixel, path.sample, dimension(path, THIRD))
         if x < share:

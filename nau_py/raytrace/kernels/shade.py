@@ -22,6 +22,8 @@ from nau_py.raytrace.kernels.tables import (
     AMBIENT,
     OCCLUSION,
     RECTANGLE,
+    SHADOW,
+    SKIPPED,
     copy_path,
     diffuse_of,
     emission_of,
@@ -36,7 +38,7 @@ from nau_py.raytrace.kernels.tables import (
 )
 from nau_py.raytrace.kernels.texture import RGBA
 from nau_py.raytrace.kernels.vec import basis, dot, in_frame, plus, reflected, scaled, times, unit
-from nau_py.raytrace.kernels.visibility import count, shadow_type_of, sound, visibility
+from nau_py.raytrace.kernels.visibility import count, shadow_type_of, skips, sound, visibility
 
 AMBIENT_FACTOR = 0.3
 LIGHT_DIMENSION = 0x1000
@@ -99,6 +101,12 @@ def light_term(
         return
     w, c = weight_of(path), banded(path, light)
     arriving = (w[0] * c[0], w[1] * c[1], w[2] * c[2])
+    if skips(scene, SHADOW):
+        count(tile, SKIPPED + SHADOW)
+        at = 4 * path.index
+        for k in range(3):
+            put_f32(tile.radiance, at + k, f32(tile.radiance, at + k) + arriving[k])
+        return
     if i8(scene.deferred_shadows, shadow_type_of(scene, ray_type)) != 0:
         late = defer(tile, path, OCCLUSION)
         set_origin(late, origin)
@@ -225,6 +233,10 @@ def ambient_occlusion(
             continue
         origin = spawn(position, face, bound, to)
         if not sound(tile, origin, to):
+            continue
+        if skips(scene, AMBIENT):
+            count(tile, SKIPPED + AMBIENT)
+            open_ += 1.0
             continue
         count(tile, AMBIENT)
         open_ += visibility(

@@ -123,6 +123,9 @@ SCENE = np.dtype(
         ("light_samples", "i4"),
         ("material_count", "i4"),
         ("asks_python", "i4"),
+        ("skipped", "i4"),
+        ("caustics", "i4"),
+        ("negligible", "f8"),
         ("occlusion_distance", "f8"),
         ("background", "f4", 4),
     ],
@@ -130,7 +133,9 @@ SCENE = np.dtype(
 )
 """Addresses and lengths of the arrays, Embree's scenes (0 for none; triangle ``first_moving``
 begins the second), and the settings of the pass. ``shadow_type``: index of the ray type that asks
-for shadows, -1 for none. ``asks_python``: whether any program is Python's.
+for shadows, -1 for none. ``asks_python``: whether any program is Python's. ``skipped``: a bit a
+kind of ray that is not sent. ``caustics``: whether lamps count that are met by way of a mirror or
+glass after a diffuse surface. ``negligible``: weight below which specular chains end.
 Positions are world space less the centre."""
 background_of = getter(SCENE, "background")
 
@@ -155,7 +160,8 @@ PATH = np.dtype(
         ("media", "i4", MEDIA),
         ("band", "i4"),
         ("kind", "i4"),
-        ("status", "i4"),
+        ("status", "i2"),
+        ("scattered", "i2"),
     ],
     align=True,
 )
@@ -166,6 +172,7 @@ solid angle with which the direction was chosen, 0 where it is not shared with l
 ``initial``: what a miss without a program brings. ``travelled``: distance before the present
 origin, past ignored hits. ``media``: indices of the materials that the origin is inside of, -1 for
 none. ``band``: the colour band that is followed after a fluorescent surface, -1 for all.
+``scattered``: whether it has left a diffuse surface.
 """
 path_at, copy_path = record_at(PATH), copy(PATH)
 origin_of, set_origin = getter(PATH, "origin"), setter(PATH, "origin")
@@ -187,6 +194,7 @@ TILE = np.dtype(
         ("stack", "u8"),
         ("shadows", "u8"),
         ("deferred", "u8"),
+        ("viewed", "u8"),
         ("capacity", "i8"),
         ("next", "i8"),
         ("waiting", "i8"),
@@ -200,8 +208,9 @@ TILE = np.dtype(
 int32 mask of valid lanes and of the QUERY; of the paths in the lanes (int64) and what they see
 (float32); of the counters, the results (4 float32 a row), the LANES paths of a bundle, those that
 wait their turn (``top`` of them), shadow rays (``pending`` of them), and paths that Python must
-answer (``waiting`` of ``capacity``, and one slot for what is too much); ``next``: the path of the
-queue to follow. Samples of the same pixel >> ``shift`` are traced together."""
+answer (``waiting`` of ``capacity``, and one slot for what is too much); ``viewed``: int32 a
+material, 1 where a primary ray met it; ``next``: the path of the queue to follow. Samples of the
+same pixel >> ``shift`` are traced together."""
 
 LANES = 16
 """Rays of a packet, paths of a bundle."""
@@ -269,9 +278,9 @@ KINDS = (
     "continuation",
 )
 PRIMARY, SHADOW, REFLECTION, REFRACTION, AMBIENT, INDIRECT, CONTINUATION, OTHER = range(8)
-NONFINITE, CUT, IN_EMBREE, COUNTERS = 8, 9, 10, 11
+NONFINITE, CUT, IN_EMBREE, SKIPPED, COUNTERS = 8, 9, 10, 11, 19
 """Slots of the counters (int64): rays by kind, rays not finite, rays cut by the layer limit, cycles
-that rays took."""
+that rays took, and from SKIPPED on by kind rays that were not sent."""
 
 USER = 127
 """The code of a program that is no kernel: Python answers for it."""

@@ -45,6 +45,12 @@ def spent(tile: Any, since: int) -> None:
 
 
 @inner
+def skips(scene: Any, kind: int) -> bool:
+    """Whether rays of a kind are not sent."""
+    return (scene.skipped >> kind) & 1 != 0
+
+
+@inner
 def finite(v: V3) -> bool:
     return isfinite(v[0]) and isfinite(v[1]) and isfinite(v[2])
 

@@ -1,0 +1,115 @@
+"""What the analysis looks at: materials with their programs, lights, camera. Only data."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+
+from nau_py.model.location import Location
+from nau_py.model.program_source import strip_decoration
+
+Colour = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramFacts:
+    """A program of a material or of the pass. ``proc``: its built-in name, or "" for one of a
+    file; ``sends``: the kinds of rays that a Python one asks for in so many words."""
+
+    label: str
+    location: Location
+    proc: str = ""
+    sends: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class MaterialFacts:
+    """A material of the traced geometry. ``closest`` and ``any_hit``: its programs, all ray types;
+    ``colours`` by attribute; ``least_alpha`` of its texture and its DIFFUSE, 0 to 1."""
+
+    name: str
+    closest: tuple[ProgramFacts, ...] = ()
+    any_hit: tuple[ProgramFacts, ...] = ()
+    colours: dict[str, Colour] = field(default_factory=dict)
+    texture_alpha: float = 1.0
+
+    def strength(self, attribute: str) -> float:
+        """The largest of the first three components of a colour; 0 where there is none."""
+        return max(self.colours.get(attribute, (0.0,))[:3], default=0.0)
+
+    @property
+    def alpha(self) -> float:
+        """The least alpha, of texture and DIFFUSE."""
+        diffuse = self.colours.get("DIFFUSE", (1.0,) * 4)
+        return self.texture_alpha * (diffuse[3] if len(diffuse) > 3 else 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class LightFacts:
+    name: str
+    location: Location
+    has_area: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class PassFacts:
+    """A raytrace pass. ``ray_types``: names, in order; ``generate``: the ray generation."""
+
+    materials: tuple[MaterialFacts, ...]
+    lights: tuple[LightFacts, ...] = ()
+    camera: str = ""
+    camera_location: Location | None = None
+    aperture: float = 0.0
+    generate: ProgramFacts | None = None
+    misses: tuple[ProgramFacts, ...] = ()
+    ray_types: tuple[str, ...] = ()
+    max_depth: int = 1
+
+    @property
+    def programs(self) -> list[tuple[MaterialFacts | None, ProgramFacts]]:
+        """Every program that can send rays, with its material."""
+        own = [self.generate] if self.generate else []
+        found: list[tuple[MaterialFacts | None, ProgramFacts]] = [
+            (None, p) for p in (*own, *self.misses)
+        ]
+        return found + [(m, p) for m in self.materials for p in (*m.closest, *m.any_hit)]
+
+
+@lru_cache(maxsize=256)
+def kinds_sent(path: Path, proc: str) -> frozenset[str]:
+    """The kinds of rays that a Python program names in its calls of ``trace``, and what functions
+    of its file that it calls name. Reads the file, runs nothing; empty where it has no parse."""
+    try:
+        tree = ast.parse(path.read_bytes(), str(path))
+    except (OSError, SyntaxError, ValueError):
+        return frozenset()
+    functions = {n.name: n for n in tree.body if isinstance(n, ast.FunctionDef)}
+    found: set[str] = set()
+    todo = [proc, strip_decoration(proc)]
+    done: set[str] = set()
+    while todo:
+        name = todo.pop()
+        if name in done or name not in functions:
+            continue
+        done.add(name)
+        for node in ast.walk(functions[name]):
+            if isinstance(node, ast.Name):
+                todo.append(node.id)
+            elif isinstance(node, ast.Call):
+                found |= _named(node)
+    return frozenset(found)
+
+
+def _named(call: ast.Call) -> set[str]:
+    """The kind, else the ray type, of a call of ``trace``."""
+    if not (isinstance(call.func, ast.Attribute) and call.func.attr == "trace"):
+        return set()
+    given = {k.arg: k.value for k in call.keywords}
+    node = given.get("kind") or (call.args[0] if call.args else None)
+    return {node.value.lower()} if _is_text(node) else set()  # type: ignore[union-attr]
+
+
+def _is_text(node: ast.expr | None) -> bool:
+    return isinstance(node, ast.Constant) and isinstance(node.value, str)

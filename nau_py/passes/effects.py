@@ -1,0 +1,157 @@
+"""Effects on demand in a raytrace pass: what it calls for, and what the engine is told."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from nau_py.effects.analysis import ALPHA, called_for, opaque
+from nau_py.effects.decision import Decision, decide
+from nau_py.effects.facts import (
+    LightFacts,
+    MaterialFacts,
+    PassFacts,
+    ProgramFacts,
+    kinds_sent,
+)
+from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.model.effects import ALL, AUTO, wanted
+from nau_py.model.linked import Project
+from nau_py.model.program_source import stand_in
+from nau_py.model.raytrace import BUILTIN, Program, RayMaterial, RaytracePass
+from nau_py.passes.frame import FrameContext, PassRecord
+from nau_py.raytrace.simulated import NEGLIGIBLE, Simulated
+from nau_py.scene.camera import CameraState
+from nau_py.scene.lights import LightState
+
+if TYPE_CHECKING:
+    from nau_py.raytrace.hits import RayMaterial as TracedMaterial
+    from nau_py.raytrace.tracer import RayCounts
+
+
+_COLOURS = (
+    "DIFFUSE",
+    "SPECULAR",
+    "EMISSION",
+    *(f"FLUORESCENCE_{band}" for band in ("RED", "GREEN", "BLUE")),
+)
+
+
+def _program(project: Project, node: Program, built_in: bool = True) -> ProgramFacts:
+    proc = node.proc or ""
+    if node.file == BUILTIN:
+        return ProgramFacts(proc, node.location, proc if built_in else "")
+    path = stand_in(project.folder, node.file or "")
+    sends = kinds_sent(path, proc) if path is not None else frozenset()
+    return ProgramFacts(f"'{proc}' of {node.file}", node.location, "", sends)
+
+
+def pass_facts(
+    pass_: RaytracePass,
+    project: Project,
+    entries: Sequence[RayMaterial | None],
+    materials: Sequence[TracedMaterial],
+    lights: Sequence[LightState],
+    camera: CameraState,
+    max_depth: int,
+) -> PassFacts:
+    """The facts of a pass in a frame. ``entries``: the programs of each of ``materials``."""
+    found = []
+    for entry, material in zip(entries, materials):
+        programs: dict[str, tuple[ProgramFacts, ...]] = {}
+        for kind in (CLOSEST_HIT, ANY_HIT):
+            nodes = [entry.program(t, kind) for t in pass_.ray_types] if entry else []
+            programs[kind] = tuple(_program(project, n) for n in nodes if n is not None)
+        texture = material.textures.get(0)
+        found.append(
+            MaterialFacts(
+                material.name,
+                programs[CLOSEST_HIT],
+                tuple(p for p in programs[ANY_HIT] if p.proc != "one_sided"),
+                {name: material.colour(name) for name in _COLOURS},
+                texture.least_alpha if texture is not None else 1.0,
+            )
+        )
+    default = pass_.rtDefaultMaterial
+    misses = [default.program(t, MISS) for t in pass_.ray_types] if default else []
+    entry_point = pass_.rtEntryPoint
+    generate = entry_point.rayGen if entry_point else None
+    own = next((n for n in project.assets.cameras if n.name == camera.name), None)
+    places = {n.name: n.location for n in project.assets.lights}
+    return PassFacts(
+        tuple(found),
+        tuple(LightFacts(s.name, places.get(s.name, pass_.location), _has_area(s)) for s in lights),
+        camera.name,
+        own.location if own is not None else pass_.location,
+        float(camera.values["APERTURE"]),
+        _program(project, generate) if generate is not None else None,
+        tuple(_program(project, n, built_in=False) for n in misses if n is not None),
+        tuple(pass_.ray_types),
+        max_depth,
+    )
+
+
+def _has_area(light: LightState) -> bool:
+    shape = str(light.values["SHAPE"][0])
+    if shape == "RECTANGLE":
+        u, v = light.vector("EDGE_U"), light.vector("EDGE_V")
+        return bool(abs(u).sum() > 0 and abs(v).sum() > 0)
+    return shape in ("DISC", "SPHERE") and float(light.values["RADIUS"][0]) > 0
+
+
+def decisions(facts: PassFacts, frame: FrameContext) -> tuple[list[Decision], Simulated]:
+    """What is simulated: the run's word, else the project's, else what the scene calls for."""
+    node = frame.project.file.effects
+    text, said = frame.session.options.effects, "--effects"
+    if text is None:
+        text, said = (node.simulate if node else None) or AUTO, "<effects>"
+    everything = text.strip() == ALL
+    negligible = 0.0 if everything else NEGLIGIBLE
+    chosen = wanted(text)
+    found = decide(chosen, called_for(facts), negligible, said)
+    left = set() if chosen is None else {d.effect for d in found if not d.simulated}
+    return found, Simulated(
+        skipped=frozenset(d.kind for d in found if d.kind and d.effect in left),
+        opaque=frozenset() if everything else opaque(facts),
+        transparency="transparency" not in left,
+        penumbra="penumbra" not in left,
+        caustics="caustics" not in left,
+        fluorescence="fluorescence" not in left,
+        lens="depth_of_field" not in left,
+        negligible=negligible,
+    )
+
+
+def effect_data(
+    made: list[Decision], facts: PassFacts, told: Simulated, counts: RayCounts, record: PassRecord
+) -> list[dict[str, Any]]:
+    """The entries of the report. ``ms_saved`` of rays that were not sent is an estimate from what a
+    ray of this pass took on average."""
+    seen = {facts.materials[k].name for k in counts.viewed if k < len(facts.materials)}
+    sampling = sum(record.stages.get(name, 0.0) for name in ("trace", "shade"))
+    each = sampling / max(sum(counts.rays.values()), 1)
+    found = []
+    for d in made:
+        kind = "continuation" if d.effect == "transparency" else d.kind
+        saved = counts.skipped.get(d.kind, 0) if d.kind else 0
+        data: dict[str, Any] = {
+            "effect": d.effect,
+            "called_for": d.called_for,
+            "by": [{"what": c.what, "where": str(c.location)} for c in d.causes],
+            "in_view": any(c.material in seen or not c.material for c in d.causes),
+            "status": "simulated" if d.simulated else "left_out",
+            "bound": d.bound,
+            "rays": counts.rays.get(kind, 0) if kind else 0,
+            "rays_saved": saved,
+            "ms_saved": round(saved * each, 3),
+        }
+        if d.reason:
+            data["reason"] = d.reason
+        if d.effect == "transparency" and d.simulated and told.opaque:
+            asked = sum(1 for m in facts.materials if any(p.proc in ALPHA for p in m.any_hit))
+            data["note"] = (
+                f"any-hit programs of {len(told.opaque)} of {asked} materials are not asked: "
+                "nothing of them is transparent (exact)"
+            )
+        found.append(data)
+    return found
