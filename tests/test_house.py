@@ -21,9 +21,22 @@ ARROWS = {
     "scene": {"model"},
     "raster": {"scene", "model"},
     "raytrace": {"scene", "model"},
-    "passes": {"raster", "raytrace", "graph", "scene", "model"},
+    "effects": {"model"},
+    "passes": {"raster", "raytrace", "graph", "scene", "effects", "model"},
     "run": {"passes", "raster", "graph", "scene", "lint", "model"},
-    "cli": {"api", "formats", "lint", "graph", "run", "passes", "raster", "raytrace", "model"},
+    "accuracy": {"run", "passes", "raster", "graph", "lint", "model"},
+    "cli": {
+        "accuracy",
+        "api",
+        "formats",
+        "lint",
+        "graph",
+        "run",
+        "passes",
+        "raster",
+        "raytrace",
+        "model",
+    },
 }
 """Room to the rooms that it may import; what design.md draws, and the arrows lint → graph and
 run → lint, without which data flow could not be linted nor a wrong project refused."""

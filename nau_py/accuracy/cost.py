@@ -140,20 +140,21 @@ def cost(
     meter = _Meter(progress)
     weights = [(runs + 1) * _weight(c, spp) for c, spp in zip(every, spps)]
     whole = _weight(most, samples)
-    meter.plan(whole + sum(weights))
+    later = 4 * weights[0] if asked.effects else 0.0
+    meter.plan(whole + sum(weights) + later)
     label = f"reference, {samples} spp"
     truth = reference(
         bench, most, samples, _device(), lambda part: meter.told(label, whole, part), asked.keep
     )
     meter.done = 0.0 if truth.cached else whole
-    meter.plan(sum(weights))
+    meter.plan(sum(weights) + later)
     sweep = _Sweep(bench, truth, runs, options.seed, meter)
     for candidate, weight in zip(every, weights):
         sweep.found.append(sweep.measure(candidate, weight))
     judge = Judge(asked.measure, region, truth, sweep.found)
     answers, verified, wanted = _targets(asked, sweep, judge, turned, samples)
     effects = (
-        worth(bench, start, runs, lambda what, part: meter.told(what, 0.0, 0.0))
+        worth(bench, start, runs, lambda what, part: meter.told(what, later, part))
         if asked.effects
         else []
     )

@@ -183,8 +183,8 @@ class Bench:
         assert found.moments is not None
         found.moments.add(image)
         found.nonfinite += int((~np.isfinite(image).all(axis=2)).sum())
-        for region in ("picture", "mask"):
-            errors = measure(image, reference.mean, reference.region(region))
+        regions = {name: reference.region(name) for name in ("picture", "mask")}
+        for region, errors in measure(image, reference.mean, regions).items():
             found.errors.setdefault(region, []).append(errors)
         found.ms.append(report["frames"][0]["ms"])
         for name, ms in stage_times(report, renderer.capture_ms).items():

@@ -7,6 +7,7 @@ measure: count it first.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf, log10
 
@@ -71,54 +72,55 @@ def _blurred(values: F64) -> F64:
         pad[axis] = (SSIM_RADIUS, SSIM_RADIUS)
         wide = np.pad(values, pad, mode="symmetric")
         size = values.shape[axis]
-        values = sum(
-            w * np.take(wide, np.arange(k, k + size), axis=axis) for k, w in enumerate(weights)
-        )
+        values = np.zeros_like(values)
+        for k, weight in enumerate(weights):
+            part = wide[k : k + size] if axis == 0 else wide[:, k : k + size]
+            values += weight * part
     return values
 
 
-def ssim(image: F64, reference: F64, where: Mask) -> float:
-    """Mean structural similarity of the chosen pixels and channels, for values of range 1
-    (Wang et al. 2004: 11 x 11 Gaussian window of sigma 1.5, K1 = 0.01, K2 = 0.03)."""
-    if not where.any():
-        return float("nan")
+def ssim_map(image: F64, reference: F64) -> F64:
+    """Structural similarity of each value, (h, w, 3), for values of range 1 (Wang et al. 2004:
+    11 x 11 Gaussian window of sigma 1.5, K1 = 0.01, K2 = 0.03)."""
     good = finite(image, reference)[..., None]
     x, y = np.where(good, image, 0.0), np.where(good, reference, 0.0)
     mean_x, mean_y = _blurred(x), _blurred(y)
-    var_x = _blurred(x * x) - mean_x**2
-    var_y = _blurred(y * y) - mean_y**2
+    squares = _blurred(x * x + y * y) - mean_x**2 - mean_y**2
     both = _blurred(x * y) - mean_x * mean_y
     c1, c2 = SSIM_K1**2, SSIM_K2**2
-    found = ((2 * mean_x * mean_y + c1) * (2 * both + c2)) / (
-        (mean_x**2 + mean_y**2 + c1) * (var_x + var_y + c2)
+    return ((2 * mean_x * mean_y + c1) * (2 * both + c2)) / (
+        (mean_x**2 + mean_y**2 + c1) * (squares + c2)
     )
-    return float(found[where].mean())
 
 
-def flip(image: F64, reference: F64, where: Mask) -> float | None:
-    """Mean FLIP (Andersson et al. 2020) of the chosen pixels, pictures taken as sRGB; None where
-    the package ``flip-evaluator`` (extra ``metrics``) is not installed."""
+def flip_map(image: F64, reference: F64) -> F64 | None:
+    """FLIP (Andersson et al. 2020) of each pixel, (h, w), pictures taken as sRGB; None where the
+    package ``flip-evaluator`` (extra ``metrics``) is not installed."""
     try:
         import flip_evaluator
     except ImportError:
         return None
-    if not where.any():
-        return float("nan")
     good = finite(image, reference)[..., None]
     x, y = (np.where(good, np.clip(v, 0, 1), 0.0).astype(np.float32) for v in (image, reference))
     found, _, _ = flip_evaluator.evaluate(y, x, "LDR", inputsRGB=True, applyMagma=False)
-    return float(np.asarray(found).reshape(where.shape)[where].mean())
+    return np.asarray(found, np.float64).reshape(image.shape[:2])
 
 
-def measure(image: F64, reference: F64, where: Mask) -> Errors:
-    """All measures over the pixels of ``where`` that are finite in both pictures."""
-    chosen = where & finite(image, reference)
-    found = mse(image, reference, chosen)
-    return Errors(
-        found,
-        float(np.sqrt(found)),
-        relmse(image, reference, chosen),
-        psnr(found),
-        ssim(image, reference, chosen),
-        flip(image, reference, chosen),
-    )
+def measure(image: F64, reference: F64, regions: Mapping[str, Mask]) -> dict[str, Errors]:
+    """All measures over each region, of its pixels that are finite in both pictures."""
+    good = finite(image, reference)
+    similar, seen = ssim_map(image, reference), flip_map(image, reference)
+    found = {}
+    for name, region in regions.items():
+        where = region & good
+        error = mse(image, reference, where)
+        some = bool(where.any())
+        found[name] = Errors(
+            error,
+            float(np.sqrt(error)),
+            relmse(image, reference, where),
+            psnr(error),
+            float(similar[where].mean()) if some else float("nan"),
+            None if seen is None else float(seen[where].mean()) if some else float("nan"),
+        )
+    return found

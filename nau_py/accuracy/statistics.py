@@ -39,7 +39,7 @@ def interval(values: Sequence[float]) -> Interval:
     """Mean of ``values`` with Student's 95 % interval; without one for a single value."""
     data = np.asarray(values, np.float64)
     mean = float(data.mean())
-    if len(data) < 2:
+    if len(data) < 2 or not np.isfinite(mean):
         return Interval(mean, mean, mean)
     half = t95(len(data) - 1) * float(data.std(ddof=1)) / sqrt(len(data))
     return Interval(mean, mean - half, mean + half)

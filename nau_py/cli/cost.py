@@ -112,7 +112,10 @@ def run(
             write_result(markdown, document(made.report))
         if apply:
             _apply(loaded, made)
-        return UNMET if any(a.setting is None for a in made.report.answers) else 0
+        unmet = [a for a in made.report.answers if a.setting is None]
+        for answer in unmet:
+            sys.stderr.write(f"{answer.question}: {answer.text}\n")
+        return UNMET if unmet else 0
 
     raise typer.Exit(guarded(work, loaded.sources, debug))
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
 
+from nau_py.accuracy.report import schema
 from nau_py.files import write_text
 from nau_py.lint.engine import rules_page
+from nau_py.model.accuracy import KNOBS
 from nau_py.model.attributes import BUILT_IN
 from nau_py.model.builtins import BUILTIN_PROGRAMS
+from nau_py.model.effects import EFFECTS
 from nau_py.model.library import MaterialLibrary
 from nau_py.model.node import (
     Attr,
@@ -128,14 +132,21 @@ def reference_page() -> str:
     lines += _sets()
     lines += ["", "## Built-in ray programs", "", "| proc | kind | |", "|---|---|---|"]
     lines += [f"| `{n}` | {kind} | {doc} |" for n, (kind, doc) in BUILTIN_PROGRAMS.items()]
+    lines += ["", "## Knobs of accuracy", "", "| knob | values | |", "|---|---|---|"]
+    for knob, kind in KNOBS.items():
+        values = ", ".join(f"`{w}`" for w in kind.words) or kind.attribute or "0.01 to 1"
+        lines.append(f"| `{knob}` | {values} | {kind.doc} |")
+    lines += ["", "## Effects", "", "| effect | |", "|---|---|"]
+    lines += [f"| `{effect}` | {doc} |" for effect, doc in EFFECTS.items()]
     return "\n".join(lines) + "\n"
 
 
 def main() -> None:
-    """Write both pages into the folder given as the only argument."""
+    """Write the pages and the schema into the folder given as the only argument."""
     folder = Path(sys.argv[1])
     write_text(folder / "rules.md", rules_page())
     write_text(folder / "reference.md", reference_page())
+    write_text(folder / "cost-1.schema.json", json.dumps(schema(), indent=2) + "\n")
 
 
 if __name__ == "__main__":

@@ -52,13 +52,15 @@ class LaunchSettings:
 class Estimate:
     """Running means of n pixels: ``mean`` RGBA float64 (n, 4), ``squares`` float64 (n, 3) sums of
     squared deviations, ``number`` int64 (n,) of finite samples, ``taken`` of all, ``largest``
-    float64 (n,) what one sample added most to the squares."""
+    float64 (n,) what one sample added most to the squares; ``batched`` float64 (n, 2) squared error
+    of the sum as batch means tell it, and the samples that it holds for."""
 
     mean: F64
     squares: F64
     number: I64
     taken: I64
     largest: F64
+    batched: F64
 
     @classmethod
     def empty(cls, count: int, single: bool = False) -> Estimate:
@@ -70,6 +72,7 @@ class Estimate:
             np.zeros(count, np.int64),
             np.zeros(count, np.int64),
             np.zeros(spread),
+            np.zeros((spread, 2)),
         )
 
     @property
@@ -83,14 +86,18 @@ class Estimate:
     @property
     def error(self) -> F64:
         """Estimated standard error of each pixel's colour, root mean square over RGB, float64
-        (n,); infinite below two samples."""
+        (n,); infinite below two samples. From the variance of the means of batches (8 of
+        16 samples, 16 of 32 and more) where every launch took 16 samples or more, else from that of
+        the samples."""
         if len(self.squares) < len(self.number):
             return np.full(len(self.number), np.inf)
         n = self.number.astype(np.float64)
         with np.errstate(divide="ignore", invalid="ignore"):
             variance = (self.squares[:, 0] + self.squares[:, 1] + self.squares[:, 2]) / 3
             found = np.sqrt(variance / (n - 1) / n)
-        return np.where(n > 1, found, np.inf)
+            means = np.sqrt(self.batched[:, 0]) / n
+        told = (self.batched[:, 1] == n) & (n > 0)
+        return np.where(told, means, np.where(n > 1, found, np.inf))
 
 
 @dataclass(slots=True)
@@ -172,6 +179,7 @@ class Work:
             estimate.squares[part],
             estimate.number[part],
             estimate.largest[part],
+            estimate.batched[part],
             bad_samples,
         )
         tracer.dropped(self.label, int(bad_samples[0]), int(bad_samples[1]))

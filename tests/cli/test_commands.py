@@ -278,3 +278,64 @@ def test_explain_says_why_a_pass_is_left_out(folder: Folder) -> None:
     assert "left out" in done.stdout
     assert "spare is left out: nothing that the picture needs reads" in done.stdout
     assert "warning[D003]" in done.stderr
+
+
+def test_cost_writes_its_files(tmp_path: Path) -> None:
+    """Table on stdout, progress on stderr, four files, exit 0; the page names the project."""
+    out = tmp_path / "out"
+    args = ["--spp", "1,4", "--reference", "32", "--runs", "2", "--out", str(out)]
+    done = run("nau-cost", SELECTIVE, *args, *SMALL, "--no-cache")
+    assert done.returncode == 0, done.stderr
+    assert "spp 16 (as it is)" in done.stdout
+    assert "reference, 32 spp" in done.stderr
+    assert sorted(p.name for p in out.iterdir()) == [
+        "cost.csv",
+        "cost.html",
+        "cost.json",
+        "cost.png",
+    ]
+    report = json.loads((out / "cost.json").read_text())
+    assert report["region"] == "mask"
+    assert "<title>Selective" in (out / "cost.html").read_text()
+
+
+@pytest.mark.parametrize(
+    "args, status, words",
+    [
+        (["--knob", "ssp=1"], 1, "there is no knob 'ssp'"),
+        (["--spp", "0"], 1, "0 is out of range: legal is 1 and more"),
+        (["--knob", "spp"], 2, "write KNOB=VALUE,VALUE"),
+        (["--measure", "ssim"], 2, "does not rank"),
+        (["--region", "sky"], 2, "write picture or mask"),
+        (["--apply"], 2, "--apply needs --target-error or --budget-time"),
+        (["--pipeline", "Rater"], 1, "did you mean 'Raster'"),
+        (["--pipeline", "Raster", "--spp", "1"], 1, "knob 'spp' needs a raytrace pass"),
+    ],
+)
+def test_cost_says_what_is_wrong(args: list[str], status: int, words: str) -> None:
+    done = run("nau-cost", SELECTIVE, *args, *SMALL, "--no-cache")
+    assert done.returncode == status
+    assert words in " ".join(done.stderr.replace("│", " ").split())
+    assert "Traceback" not in done.stderr
+
+
+def test_cost_of_an_unmet_target_fails() -> None:
+    args = ["--spp", "1", "--reference", "20", "--runs", "2", "--target-error", "1e-9", "--quiet"]
+    done = run("nau-cost", SELECTIVE, *args, *SMALL, "--no-cache")
+    assert done.returncode == 1
+    assert "no setting reaches it" in done.stderr
+
+
+def test_effects_on_the_command_line(tmp_path: Path) -> None:
+    """--effects leaves out what it does not list, --explain says so, a wrong name is wrong usage."""
+    report = tmp_path / "r.json"
+    args = ["--effects", "shadow", "--explain", "--report", str(report)]
+    done = run("nau-run", SELECTIVE, *args, *SMALL)
+    assert done.returncode == 0, done.stderr
+    told = {e["effect"]: e for e in json.loads(report.read_text())["effects"]}
+    assert told["shadow"]["status"] == "simulated"
+    assert told["reflection"]["reason"] == "--effects leaves it out"
+    assert "called for by" in done.stdout
+    wrong = run("nau-run", SELECTIVE, "--effects", "shadows", *SMALL)
+    assert wrong.returncode == 2
+    assert "no effect 'shadows'" in " ".join(wrong.stderr.replace("│", " ").split())

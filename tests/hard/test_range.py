@@ -61,7 +61,14 @@ def sums(values: np.ndarray) -> Estimate:  # type: ignore[type-arg]
     radiance = np.ascontiguousarray(np.repeat(values[:, None], 4, axis=1), np.float32)
     bad = np.zeros(2, np.int64)
     accumulate(
-        radiance, items, estimate.mean, estimate.squares, estimate.number, estimate.largest, bad
+        radiance,
+        items,
+        estimate.mean,
+        estimate.squares,
+        estimate.number,
+        estimate.largest,
+        estimate.batched,
+        bad,
     )
     return estimate
 
@@ -101,6 +108,7 @@ def test_merged_sums() -> None:
             estimate.squares,
             estimate.number,
             estimate.largest,
+            estimate.batched,
             np.zeros(2, np.int64),
         )
     np.testing.assert_array_equal(estimate.mean, whole.mean)

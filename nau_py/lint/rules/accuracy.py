@@ -16,7 +16,7 @@ A001 = rule(
     "A001",
     ERROR,
     "Unknown knob",
-    "A knob is one of the short names of docs/accuracy-tool.md, PASS/ATTRIBUTE of a pass of the "
+    "A knob is one of the short names of docs/cost.md, PASS/ATTRIBUTE of a pass of the "
     "pipeline, or PASS/SELECTOR/ATTRIBUTE of a mask pass.",
     "<knob name='ssp' values='1, 4'/>",
     "<knob name='spp' values='1, 4'/>",

@@ -46,6 +46,9 @@ _base, _step = getter(CAMERA, "base"), getter(CAMERA, "step")
 
 CENTRE, JITTER, STRATA, SOBOL = range(4)
 """Where the samples of a pixel lie."""
+BATCHES, LEAST = 16, 16
+"""Runs of a pixel's samples whose means tell its error: at most so many, of two samples or more;
+from LEAST samples on."""
 ITEM = np.dtype([("pixel", "i8"), ("first", "i4"), ("count", "i4")], align=True)
 """A pixel to sample: flat index, first sample number, and how many."""
 
@@ -165,6 +168,32 @@ def generate(
             at += 1
 
 
+@inner
+def _batch_error(
+    sums: NDArray[np.float64], sizes: NDArray[np.float64], batched: NDArray[np.float64], i: int
+) -> None:
+    """Add to pixel ``i`` the squared error of the sum of its batches, mean over RGB."""
+    used, total = 0, 0.0
+    for b in range(BATCHES):
+        if sizes[b] > 0.0:
+            used += 1
+            total += sizes[b]
+    if used < 2:
+        return
+    squared = 0.0
+    for k in range(3):
+        mean = 0.0
+        for b in range(BATCHES):
+            if sizes[b] > 0.0:
+                mean += sums[b, k] / sizes[b] / used
+        for b in range(BATCHES):
+            if sizes[b] > 0.0:
+                off = sums[b, k] / sizes[b] - mean
+                squared += off * off
+    batched[i, 0] += squared / 3.0 / (used - 1) / used * total * total
+    batched[i, 1] += total
+
+
 @kernel
 def accumulate(
     radiance: NDArray[np.float32],
@@ -173,19 +202,28 @@ def accumulate(
     squares: NDArray[np.float64],
     number: NDArray[np.int64],
     largest: NDArray[np.float64],
+    batched: NDArray[np.float64],
     bad: NDArray[np.int64],
 ) -> None:
     """Add the samples of each pixel to its mean and sum of squared deviations, and keep the
     largest one's share.
 
     Welford, *Note on a Method for Calculating Corrected Sums of Squares and Products*, 1962.
+    ``batched`` (n, 2) gets the squared error of the sum over these samples, from the means of
+    BATCHES runs of them, and how many samples that holds for (batch means, Schmeiser 1982): each
+    run of a low-discrepancy sequence is stratified, which single samples do not show.
     With empty ``squares`` only means are kept. Samples that are not finite are dropped: ``bad``
     holds how many, and the first one's pixel.
     """
     at = 0
     many = squares.shape[0] > 0
+    sums = np.zeros((BATCHES, 3))
+    sizes = np.zeros(BATCHES)
     for i in range(items.shape[0]):
-        for _ in range(items[i].count):
+        count = items[i].count
+        batches = min(BATCHES, count // 2) if count >= LEAST else 0
+        sums[:], sizes[:] = 0.0, 0.0
+        for which in range(count):
             c = radiance[at]
             at += 1
             if not (isfinite(c[0]) and isfinite(c[1]) and isfinite(c[2]) and isfinite(c[3])):
@@ -204,3 +242,10 @@ def accumulate(
                     square += added
             if many:
                 largest[i] = max(largest[i], square)
+                if batches > 0:
+                    batch = which * batches // count
+                    sizes[batch] += 1.0
+                    for k in range(3):
+                        sums[batch, k] += float(c[k])
+        if many and batches > 0:
+            _batch_error(sums, sizes, batched, i)
