@@ -68,7 +68,7 @@ def _table(report: CostReport, settings: list[SettingCost]) -> list[str]:
             e = s.errors[region]
             half = (e.rmse.interval[1] or 0) - (e.rmse.mean or 0)
             cells += [
-                f"{e.rmse.mean or 0:.4f} ± {half:.4f}",
+                f"{e.rmse.mean or 0:.4f} ± {half:.2g}",
                 f"{e.relmse.mean or 0:.3g}",
                 f"{e.ssim.mean or 0:.4f}",
                 f"{(e.bias2 or 0) ** 0.5:.4f}",

@@ -33,7 +33,7 @@ body { font: 15px/1.5 system-ui, sans-serif; color: #1b1f24; margin: 2rem auto; 
 h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2.2rem; }
 table { border-collapse: collapse; width: 100%; font-size: 13px; }
 th, td { padding: .25rem .5rem; border-bottom: 1px solid #d8dee4; text-align: right; }
-th:first-child, td:first-child { text-align: left; white-space: nowrap; }
+th:first-child, td:first-child { text-align: left; } td { white-space: nowrap; }
 .wide { overflow-x: auto; }
 .front td:first-child { font-weight: 600; } .grey { color: #57606a; }
 .bar { display: flex; height: 16px; } .bar span { display: block; }

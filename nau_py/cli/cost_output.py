@@ -85,7 +85,7 @@ def print_cost(report: CostReport) -> None:
             e = s.errors[region]
             half = (e.rmse.interval[1] or 0) - (e.rmse.mean or 0)
             bias = "" if e.bias2 is None else f"{e.bias2**0.5:.4f}"
-            cells += [f"{e.rmse.mean or 0:.4f}", f"±{half:.4f}", f"{e.relmse.mean or 0:.4g}", bias]
+            cells += [f"{e.rmse.mean or 0:.4f}", f"±{half:.2g}", f"{e.relmse.mean or 0:.4g}", bias]
         mark = "better than the reference" if s.better_than_reference else ""
         table.add_row(*cells, "yes" if s.on_front else mark)
     console.print(table)

@@ -17,10 +17,11 @@ def dot(a, b):
 def pinhole_camera(launch):
     """Ray generation: one ray a sample, jittered inside its cell of a grid over the pixel."""
     side = round(launch.samples**0.5)
+    side = side if side * side == launch.samples else 1  # of other numbers there is no grid
     dx, dy = np.full(len(launch), 0.5), np.full(len(launch), 0.5)
     if launch.samples > 1:
         dx = (launch.sample % side + launch.random(0)) / side
-        dy = (launch.sample // side + launch.random(1)) / side
+        dy = (launch.sample // side % side + launch.random(1)) / side
     origin, direction = launch.camera_rays(launch.x + dx, launch.y + dy)
     return launch.trace("Radiance", origin, direction)
 
