@@ -19,6 +19,7 @@ def document(report: CostReport) -> str:
         "## All settings",
         "\n".join(_table(report, report.settings)),
     ]
+    parts += ["## Equal time, equal error", "\n".join(_comparisons(report))]
     if report.effects:
         parts += ["## What each effect is worth", "\n".join(_effects(report))]
     return "\n\n".join(parts) + "\n"
@@ -75,6 +76,21 @@ def _table(report: CostReport, settings: list[SettingCost]) -> list[str]:
                 f"{(e.variance or 0) ** 0.5:.4f}",
             ]
         rows.append("| " + " | ".join([*cells, "yes" if s.on_front else ""]) + " |")
+    return rows
+
+
+def _comparisons(report: CostReport) -> list[str]:
+    rows = [
+        "| setting | in no more time | error | with no more error | time |",
+        "|---|---|--:|---|--:|",
+    ]
+    for c in report.comparisons:
+        error = f"{c.error_ratio:.2f} x" if c.error_ratio is not None else ""
+        time = f"{c.time_ratio:.2f} x" if c.time_ratio is not None else ""
+        rows.append(
+            f"| {c.setting} | {c.at_equal_time or 'nothing is better'} | {error} "
+            f"| {c.at_equal_error or 'nothing is faster'} | {time} |"
+        )
     return rows
 
 

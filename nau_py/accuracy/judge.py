@@ -10,6 +10,7 @@ from nau_py.accuracy.front import Point, at_error, at_time, front, knee
 from nau_py.accuracy.measure import Measured, Reference
 from nau_py.accuracy.report import (
     Answer,
+    Comparison,
     Estimate,
     RegionErrors,
     SettingCost,
@@ -171,19 +172,29 @@ class Judge:
         text = f"{m.candidate.label}: {time:.0f} ms, {self.measure} {value:.3g}"
         return Answer(question=question, setting=m.candidate.label, text=text), m
 
-    def answers(self) -> list[Answer]:
-        """Equal time and equal error against the project as it is, from what was measured."""
-        own = self.measured[0]
-        time, value = self.point(own)
+    def comparisons(self) -> list[Comparison]:
+        """For each setting the most accurate other one that takes no longer, and the fastest other
+        one that is no worse."""
         points = [self.point(m) for m in self.measured]
         found = []
-        as_fast, as_good = at_time(points, time), at_error(points, value)
-        if as_fast is not None:
-            question = f"at equal time ({time:.0f} ms), the most accurate"
-            found.append(self._answer(question, self.measured[as_fast])[0])
-        if as_good is not None:
-            question = f"at equal error ({self.measure} {value:.3g}), the fastest"
-            found.append(self._answer(question, self.measured[as_good])[0])
+        for k, (time, value) in enumerate(points):
+            others = [i for i in range(len(points)) if i != k]
+            rest = [points[i] for i in others]
+            better, faster = at_time(rest, time), at_error(rest, value)
+            if better is not None and rest[better][1] >= value:
+                better = None
+            if faster is not None and rest[faster][0] >= time:
+                faster = None
+            labels = [self.measured[i].candidate.label for i in others]
+            found.append(
+                Comparison(
+                    setting=self.measured[k].candidate.label,
+                    at_equal_time=labels[better] if better is not None else None,
+                    error_ratio=rest[better][1] / value if better is not None else None,
+                    at_equal_error=labels[faster] if faster is not None else None,
+                    time_ratio=rest[faster][0] / time if faster is not None else None,
+                )
+            )
         return found
 
     def verify_error(self, m: Measured, most: float) -> Verified:

@@ -257,6 +257,7 @@ def page(run: CostRun) -> str:
         "<h2>Front</h2><p>Filled: no other setting is both faster and more accurate. Bars: 95 % "
         "interval of the error, least and greatest time.</p>",
         *plots,
+        f"<h2>Equal time, equal error</h2>{_comparisons(report)}",
         f"<h2>Where the time goes</h2>{_bars(report)}",
         f"<h2>Where it is worst</h2>{_crops(run)}",
         f"<h2>Whole picture</h2>{_maps(run)}",
@@ -271,6 +272,23 @@ def page(run: CostRun) -> str:
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
         f"<style>{_STYLE}</style></head><body>{body}</body></html>\n"
     )
+
+
+def _comparisons(report: CostReport) -> str:
+    rows = [
+        "<tr><th>setting</th><th>in no more time</th><th>error</th><th>with no more error</th>"
+        "<th>time</th></tr>"
+    ]
+    for c in report.comparisons:
+        cells = [
+            c.setting,
+            c.at_equal_time or "nothing is better",
+            f"{c.error_ratio:.2f} x" if c.error_ratio is not None else "",
+            c.at_equal_error or "nothing is faster",
+            f"{c.time_ratio:.2f} x" if c.time_ratio is not None else "",
+        ]
+        rows.append("<tr>" + "".join(f"<td>{escape(c)}</td>" for c in cells) + "</tr>")
+    return f"<table>{''.join(rows)}</table>"
 
 
 def _effects(report: CostReport) -> str:

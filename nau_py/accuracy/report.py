@@ -85,6 +85,16 @@ class Answer(_Part):
     text: str
 
 
+class Comparison(_Part):
+    """The best of the other settings at equal time and at equal error; None where there is none."""
+
+    setting: str
+    at_equal_time: str | None
+    error_ratio: float | None = Field(description="Its error, as a part of this one's.")
+    at_equal_error: str | None
+    time_ratio: float | None = Field(description="Its time, as a part of this one's.")
+
+
 class Verified(_Part):
     """A promise, rendered again with new seeds."""
 
@@ -122,6 +132,7 @@ class CostReport(_Part):
     settings: list[SettingCost]
     knee: str | None
     halving: float | None = Field(description="To halve the error costs so many times the time.")
+    comparisons: list[Comparison]
     answers: list[Answer]
     verified: list[Verified]
     effects: list[EffectCost]

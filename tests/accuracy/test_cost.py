@@ -219,6 +219,12 @@ def test_the_mask_against_tracing_everything() -> None:
     knobs = {"mask": "none, project, all", "spp": "4"}
     found = run(project, knobs=knobs, reference=64, size=(96, 96))
     settings = by(found, "mask")
+    told = {c.setting: c for c in found.report.comparisons}
+    everything = next(c for label, c in told.items() if "mask all" in label)
+    assert everything.at_equal_error is not None
+    assert "mask project" in everything.at_equal_error
+    assert everything.time_ratio is not None
+    assert everything.time_ratio < 1
     only = {s.values["mask"]: s for s in found.report.settings if s.values["spp"] == 16}
     assert found.report.region == "mask"
     assert rmse(only["project"], "mask") == pytest.approx(rmse(only["all"], "mask"), rel=1e-9)
