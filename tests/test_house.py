@@ -25,8 +25,10 @@ ARROWS = {
     "passes": {"raster", "raytrace", "graph", "scene", "effects", "model"},
     "run": {"passes", "raster", "graph", "scene", "lint", "model"},
     "accuracy": {"run", "passes", "raster", "graph", "lint", "model"},
+    "batch": set(),
     "cli": {
         "accuracy",
+        "batch",
         "api",
         "formats",
         "lint",

@@ -87,6 +87,15 @@ def run(
         list[str] | None,
         typer.Option("--set", help="NAME=VALUE of the project's interface; may be repeated."),
     ] = None,
+    batch: Annotated[
+        Path | None, typer.Option(help="Render every project below this folder instead.")
+    ] = None,
+    time_limit: Annotated[
+        float, typer.Option(min=0.1, help="Of --batch: seconds for a project.")
+    ] = 120.0,
+    memory_limit: Annotated[
+        float, typer.Option(min=1, help="Of --batch: megabytes for a project.")
+    ] = 4096.0,
     quiet: Annotated[bool, typer.Option(help="No table, no progress, no warnings.")] = False,
     debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
     doctor: Annotated[bool, typer.Option(help="Say what this machine has and lacks.")] = False,
@@ -96,6 +105,20 @@ def run(
         from nau_py.cli.doctor import examine
 
         raise typer.Exit(examine())
+    if batch is not None:
+        from nau_py.cli.batch import run_batch
+
+        if project is not None or output is not None or targets is not None:
+            raise typer.BadParameter(
+                "--batch renders a folder: no PROJECT, -o or --targets with it"
+            )
+        words = {
+            "--pipeline": pipeline, "--size": size, "--spp": spp, "--effects": effects,
+            "--frames": frames, "--time-step": time_step, "--seed": seed, "--threads": threads,
+        }  # fmt: skip
+        more = [w for k, v in words.items() if v is not None for w in (k, str(v))]
+        more += ["--no-programs"] * no_programs
+        raise typer.Exit(run_batch(batch, report, time_limit, memory_limit, more, quiet))
     if project is None:
         sys.stderr.write("Missing argument 'PROJECT'. Try 'nau-run --help'.\n")
         raise typer.Exit(USAGE)
