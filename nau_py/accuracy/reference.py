@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import io
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +15,8 @@ import nau_py.version
 from nau_py.accuracy.candidate import Candidate
 from nau_py.accuracy.measure import Bench, Reference
 from nau_py.files import write_bytes
-from nau_py.lint.walk import nodes
 from nau_py.model.knob import traced
-from nau_py.model.linked import Project
-from nau_py.model.node import Attr, file_key
-from nau_py.paths import resolve
+from nau_py.run.used import used_files
 
 BATCHES = 2
 """Renders with different seeds that a reference is the mean of: from their difference its own
@@ -33,31 +30,6 @@ KEPT = 24
 def cache_folder() -> Path:
     base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     return Path(base) / "nau_py" / "references"
-
-
-def files_of(project: Project) -> list[Path]:
-    """Every file that a picture of ``project`` depends on, sorted: project, libraries, and what
-    they name; of models, programs and scripts all that lies in their folders."""
-    found = {Path(p).resolve() for p in project.sources}
-    for node in nodes(project):
-        for name, marker in node.markers().items():
-            value = getattr(node, name)
-            if not isinstance(marker, Attr) or not marker.file or not isinstance(value, str):
-                continue
-            folder = Path(node.where(file_key(name, marker)).file or ".").parent
-            path = resolve(folder, value).best
-            if path is None or not path.exists():
-                continue
-            found.add(path.resolve())
-            if marker.file in ("model", "program", "script"):
-                found |= set(_around(path.resolve(), marker.file))
-    return sorted(p for p in found if p.is_file())
-
-
-def _around(path: Path, kind: str) -> Iterator[Path]:
-    for other in path.parent.rglob("*"):
-        if other.is_file() and (kind == "model" or other.suffix in (".py", ".lua")):
-            yield other
 
 
 def content_key(bench: Bench, candidate: Candidate, spp: int, device: str) -> str:
@@ -77,8 +49,9 @@ def content_key(bench: Bench, candidate: Candidate, spp: int, device: str) -> st
     )
     digest.update(repr(said).encode())
     package = Path(nau_py.version.__file__).parent
-    for path in [*sorted(package.rglob("*.py")), *files_of(bench.project)]:
-        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    for path in [*sorted(package.rglob("*.py")), *sorted(used_files(bench.project))]:
+        if path.is_file():
+            digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
 
 

@@ -96,6 +96,9 @@ def run(
     memory_limit: Annotated[
         float, typer.Option(min=1, help="Of --batch: megabytes for a project.")
     ] = 4096.0,
+    watch: Annotated[
+        bool, typer.Option(help="Render again when a file of the project changes.")
+    ] = False,
     quiet: Annotated[bool, typer.Option(help="No table, no progress, no warnings.")] = False,
     debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
     doctor: Annotated[bool, typer.Option(help="Say what this machine has and lacks.")] = False,
@@ -145,6 +148,20 @@ def run(
 
         if output is not None:
             check_output(output)
+        if watch:
+            from nau_py.cli.table import print_table
+            from nau_py.cli.watch import run_watch
+
+            return run_watch(
+                project,
+                output,
+                lambda changed: Renderer(
+                    changed, pipeline, size=window, options=options, time_step=time_step,
+                    parameters=given,
+                ),
+                last,
+                lambda frame: None if quiet else print_table(frame.report, explain),
+            )  # fmt: skip
         with progress_bar(quiet) as progress:
             renderer = Renderer(
                 loaded,

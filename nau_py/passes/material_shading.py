@@ -31,6 +31,12 @@ class MaterialShading:
         self.context: DrawContext | None = None
         """The frame's context; set before rays are traced."""
 
+    def forget(self) -> None:
+        """Make its programs anew at the next hit: their sources have changed."""
+        from nau_py.raster.hits import HitShading
+
+        self._shading = HitShading()
+
     def __call__(self, hits: Hits) -> F32:
         colours: Any = self._service.call(self._shade, hits)
         return np.asarray(colours, np.float32)

@@ -57,20 +57,26 @@ class TracingState:
         self.service = MainThread()
         solid = [o for o in objects if o.mesh.primitive == "TRIANGLES"]
         self.shading = MaterialShading(solid, self.mapped, self.service)
-        loader = _loader(session, {(CLOSEST_HIT, "material"): self.shading})
-        entry = pass_.rtEntryPoint
+        self.label = f"project '{session.project.name}', pass '{pass_.name}'"
+        self.bind(pass_)
+
+    def bind(self, pass_: RaytracePass) -> None:
+        """Load the programs of the pass, or load them anew. Raises
+        :class:`~nau_py.errors.ProgramError`; those that were bound then stay."""
+        loader = _loader(self.session, {(CLOSEST_HIT, "material"): self.shading})
+        entry, label = pass_.rtEntryPoint, self.label
         assert entry is not None
-        label = f"project '{session.project.name}', pass '{pass_.name}'"
-        self.label = label
         generate = entry.rayGen or Program(file="builtin", proc="pinhole")
-        self.generate = loader.load(
+        generation = loader.load(
             generate, f"{label}, ray generation program '{generate.proc}'", RAY_GENERATION
         )
-        self.exception = None
+        exception = None
         if entry.exception is not None:
             what = f"{label}, exception program '{entry.exception.proc}'"
-            self.exception = loader.load(entry.exception, what, EXCEPTION)
-        self.programs = self._bind(pass_, loader)
+            exception = loader.load(entry.exception, what, EXCEPTION)
+        programs = self._bind(pass_, loader)
+        self.generate, self.exception, self.programs = generation, exception, programs
+        self._kept = None
 
     def update(self, pass_: RaytracePass) -> None:
         """Follow what was moved since the last frame: only what moves is built anew."""

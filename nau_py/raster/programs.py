@@ -94,6 +94,13 @@ class Program:
             slot.last = raw
 
 
+def stage_files(shader: Shader) -> list[Path]:
+    """The resolved paths of all source files of a shader."""
+    folder = Path(shader.location.file).parent
+    names = [name for stage in STAGES for name in shader.files(stage)]
+    return [resolve(folder, name).best.resolve() for name in names]
+
+
 def read_stage(shader: Shader, stage: str) -> StageSource | None:
     """The concatenated files of a stage, with line directives between them (nau-format.md, 6.5)."""
     names = shader.files(stage)

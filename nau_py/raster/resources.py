@@ -23,7 +23,7 @@ from nau_py.raster.blocks import UniformBlocks
 from nau_py.raster.buffers import initial_content
 from nau_py.raster.device import Device
 from nau_py.raster.geometry import Geometry
-from nau_py.raster.programs import Program, compile_program
+from nau_py.raster.programs import Program, compile_program, stage_files
 from nau_py.raster.samplers import Samplers
 from nau_py.raster.targets import COMPLETE, Attachment, Target, window_target
 from nau_py.raster.textures import Texture, cube_from_images, from_image, from_volume, make_texture
@@ -54,6 +54,9 @@ class Resources:
         self._cleared: list[Any] = []
         self._buffers: dict[str, Any] = {}
         self._programs: dict[tuple[str, str], Program | None] = {}
+        self._replaced: list[Program] = []
+        """Programs that were compiled anew: vertex arrays are kept by OpenGL's number of a program,
+        which must not come back."""
 
     def release(self) -> None:
         """Delete every GPU object that moderngl does not own."""
@@ -242,6 +245,26 @@ class Resources:
                 except ShaderError as problem:
                     self.diagnostics += problem.diagnostics
         return self._programs[key]
+
+    def reload_programs(self, files: set[Path]) -> int:
+        """Compile anew the programs that stand in ``files`` (resolved paths), and say how many.
+
+        Raises :class:`~nau_py.errors.ShaderError` where one does not compile; all are then as they
+        were.
+        """
+        made: dict[tuple[str, str], Program] = {}
+        for key in self._programs:
+            found = self.project.shader(*key)
+            if found is None or not files & set(stage_files(found[1])):
+                continue
+            made[key] = compile_program(self.device.ctx, key[0], found[1])
+        for key, program in made.items():
+            self.blocks.attach(program.mgl.glo)
+            old = self._programs[key]
+            if old is not None:
+                self._replaced.append(old)
+            self._programs[key] = program
+        return len(made)
 
     def check(self) -> None:
         """Raise what has gone wrong so far, if any of it is an error."""

@@ -170,7 +170,9 @@ class ProgramLoader:
         module = importlib.util.module_from_spec(spec)
         sys.modules[name] = module
         try:
-            spec.loader.exec_module(module)
+            # not through the loader: its bytecode is told apart by size and whole seconds only,
+            # and would stand in the project's folder
+            exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
         except SyntaxError as bug:
             place = Location(str(path), bug.lineno or 1, bug.offset or 1)
             raise ProgramError(error("T010", place, f"{label}: {bug.msg}")) from bug

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -210,14 +211,15 @@ class Renderer:
             self._next += 1
         return self._finished(frame, start, records)
 
-    def again(self, seed: int) -> Frame:
-        """Render the frame of the last :meth:`render` once more, with other random numbers.
+    def again(self, seed: int | None = None) -> Frame:
+        """Render the frame of the last :meth:`render` once more, with random numbers of ``seed``.
 
         Nothing else changes, but what a pass reads of the frame before is now this frame's.
         """
         if self._next == 0:
             raise ValueError("no frame has been rendered yet")
-        self.session.options = replace(self._options, seed=seed)
+        if seed is not None:
+            self.session.options = replace(self._options, seed=seed)
         start = perf_counter()
         records = self._step(self._next - 1)
         return self._finished(self._next - 1, start, records)
@@ -252,6 +254,21 @@ class Renderer:
         earlier frame, put everything back. Raises ValueError for an unknown name.
         """
         self.session.world.move(name, matrix)
+
+    def reload_shaders(self, files: set[Path]) -> None:
+        """Compile anew the GLSL programs that stand in ``files`` (resolved paths), for the next
+        frame. Raises :class:`~nau_py.errors.ShaderError`; all are then as they were."""
+        self.session.resources.reload_programs(files)
+        for state in self.session.tracers.values():
+            state.shading.forget()
+
+    def reload_ray_programs(self) -> None:
+        """Load the ray programs anew, for the next frame. Raises
+        :class:`~nau_py.errors.ProgramError`; those of the pass then stay."""
+        tracers = self.session.tracers
+        for pass_ in self.pipeline.passes:
+            if (pass_.name or "") in tracers:
+                tracers[pass_.name or ""].bind(pass_)
 
     def close(self) -> None:
         """Free the GPU objects. Rendering again starts from frame 0."""

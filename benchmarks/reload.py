@@ -1,0 +1,69 @@
+"""How long a change takes from saving a file to the new picture.
+
+``python benchmarks/reload.py [SIZE]`` copies the selective demo, follows it as ``nau-run --watch``
+does, and saves a shader, a ray program and the project file, five times each. It prints the medians
+beside a steady frame of the same run, as ratios: what is above 1 is the cost of taking in the change.
+"""
+
+from __future__ import annotations
+
+import shutil
+import statistics
+import sys
+import tempfile
+from pathlib import Path
+from time import perf_counter
+
+import nau_py
+from nau_py.run.renderer import Renderer
+from nau_py.run.watch import Watch
+
+ROOT = Path(__file__).parent.parent
+RUNS = 5
+
+
+def main() -> None:
+    size = int(sys.argv[1]) if len(sys.argv) > 1 else 512
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        for name in ("projects/selective", "projects/models", "materials"):
+            shutil.copytree(ROOT / name, root / name)
+        watch = Watch(
+            root / "projects/selective/project.xml", lambda p: Renderer(p, size=(size, size))
+        )
+        watch.start()
+        assert watch.renderer is not None
+        print(watch.renderer.again().report["machine"])
+        steady = []
+        for _ in range(RUNS):
+            begun = perf_counter()
+            watch.renderer.again()
+            steady.append(perf_counter() - begun)
+        frame = statistics.median(steady)
+        print(f"steady frame: {frame * 1000:.0f} ms")
+        for label, name, mark in (
+            ("shader", "materials/shaders/combine.frag", "// {}\n"),
+            ("ray program", "projects/selective/programs/hybrid.py", "# {}\n"),
+            ("project", "projects/selective/project.xml", "<!-- {} -->\n"),
+        ):
+            times = []
+            for run in range(RUNS):
+                file = root / name
+                text = file.read_text()
+                begun = perf_counter()
+                file.write_text(text + "\n" + mark.format(run))
+                changed = watch.changed()
+                assert changed, name
+                watch.render(changed)
+                times.append(perf_counter() - begun)
+            middle = statistics.median(times)
+            print(
+                f"{label}: {middle * 1000:.0f} ms ({min(times) * 1000:.0f} to "
+                f"{max(times) * 1000:.0f}), {middle / frame:.2f} x a steady frame"
+            )
+        watch.close()
+    print(nau_py.__version__)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,67 @@
+"""``nau-run --watch``: render again at every change, until it is interrupted."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from time import perf_counter, sleep, strftime
+
+from nau_py.cli.common import say
+from nau_py.errors import NauError
+from nau_py.model.linked import Project
+from nau_py.run.output import write_image
+from nau_py.run.renderer import Frame, Renderer
+from nau_py.run.watch import Watch
+
+PERIOD = 0.02
+"""Seconds between two looks at the files."""
+
+
+def run_watch(
+    path: Path,
+    output: Path | None,
+    make: Callable[[Project], Renderer],
+    frame: int,
+    show: Callable[[Frame], None],
+) -> int:
+    """Render, then follow the files. A wrong state is said on stderr, and the last good picture
+    stays. Ends by Ctrl-C, with exit status 0."""
+    watch = Watch(path, make, frame, output)
+    sys.stderr.write(f"{strftime('%H:%M:%S')} watching {path}; Ctrl-C ends\n")
+    try:
+        _attempt(watch, watch.start, "first picture", output, show)
+        while True:
+            sleep(PERIOD)
+            changed = watch.changed()
+            if not changed:
+                continue
+            sleep(PERIOD)  # an editor may write in several steps
+            changed |= watch.changed()
+            names = ", ".join(sorted(p.name for p in changed))
+            _attempt(watch, lambda now=changed: watch.render(now), names, output, show)  # type: ignore[misc]
+    except KeyboardInterrupt:
+        return 0
+    finally:
+        watch.close()
+
+
+def _attempt(
+    watch: Watch,
+    render: Callable[[], Frame],
+    why: str,
+    output: Path | None,
+    show: Callable[[Frame], None],
+) -> None:
+    begun = perf_counter()
+    try:
+        frame = render()
+        if output is not None:
+            write_image(output, frame.image)
+    except NauError as problem:
+        say(problem.diagnostics, watch.project.sources)
+        sys.stderr.write(f"{strftime('%H:%M:%S')} {why}: wrong; the last picture stays\n")
+        return
+    ms = (perf_counter() - begun) * 1000
+    sys.stderr.write(f"{strftime('%H:%M:%S')} {why}: {ms:.0f} ms\n")
+    show(frame)
