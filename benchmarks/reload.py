@@ -29,7 +29,9 @@ def main() -> None:
         for name in ("projects/selective", "projects/models", "materials"):
             shutil.copytree(ROOT / name, root / name)
         watch = Watch(
-            root / "projects/selective/project.xml", lambda p: Renderer(p, size=(size, size))
+            root / "projects/selective/project.xml",
+            nau_py.load,
+            lambda p: Renderer(p, size=(size, size)),
         )
         watch.start()
         assert watch.renderer is not None

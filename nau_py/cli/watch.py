@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter, sleep, strftime
 
+from nau_py.api import load
 from nau_py.cli.common import say
 from nau_py.errors import NauError
 from nau_py.model.linked import Project
@@ -27,7 +28,7 @@ def run_watch(
 ) -> int:
     """Render, then follow the files. A wrong state is said on stderr, and the last good picture
     stays. Ends by Ctrl-C, with exit status 0."""
-    watch = Watch(path, make, frame, output)
+    watch = Watch(path, load, make, frame, output)
     sys.stderr.write(f"{strftime('%H:%M:%S')} watching {path}; Ctrl-C ends\n")
     try:
         _attempt(watch, watch.start, "first picture", output, show)

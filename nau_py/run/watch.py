@@ -12,7 +12,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 from nau_py.errors import NauError
-from nau_py.formats import load_project
 from nau_py.model.linked import Project
 from nau_py.run.renderer import Frame, Renderer
 from nau_py.run.used import PROGRAM, SHADER, used_files
@@ -32,21 +31,22 @@ def stamp(path: Path) -> Stamp:
 class Watch:
     """A project that is rendered again when its files change.
 
-    ``make``: a renderer for a project; raises :class:`~nau_py.errors.NauError` for a wrong one.
-    ``frame``: the frame to render. ``own``: a file that is written from the pictures, which is not
-    followed.
+    ``load`` reads the project; ``make`` makes a renderer for it, and raises
+    :class:`~nau_py.errors.NauError` for a wrong one. ``frame``: the frame to render. ``own``: a
+    file that is written from the pictures, which is not followed.
     """
 
     def __init__(
         self,
         path: Path,
+        load: Callable[[Path], Project],
         make: Callable[[Project], Renderer],
         frame: int = 0,
         own: Path | None = None,
     ) -> None:
         self._own = own.resolve() if own is not None else None
-        self.path, self._make, self._frame = path, make, frame
-        self.project = load_project(path)
+        self.path, self._load, self._make, self._frame = path, load, make, frame
+        self.project = load(path)
         self.renderer: Renderer | None = None
         self._sound = False
         """Whether the last rendering succeeded: only then a part of it may be exchanged."""
@@ -88,7 +88,7 @@ class Watch:
         return frame
 
     def _reload(self) -> Frame:
-        project = load_project(self.path)
+        project = self._load(self.path)
         self._follow(project)
         return self._whole(project)
 

@@ -180,12 +180,14 @@ def test_a_target_is_met_and_verified(folder: Folder) -> None:
     assert answer.setting == promise.setting
     assert promise.kept
     assert found.chosen is not None
-    number = int(found.chosen["spp"] or 0)
-    assert 1 < number < 64
-    tried = {int(m.candidate["spp"] or 0): m for m in found.measured}
-    below = max(n for n in tried if n < number)
-    assert below >= number / 2
-    assert rmse(by(found, "spp")[below]) > 0.02 * 0.8
+    settings = by(found, "spp")
+    passing = {
+        n for n, s in settings.items() if (s.errors["picture"].rmse.interval[1] or 1) <= 0.02
+    }
+    assert found.chosen["spp"] in passing  # which of them is the fastest, is the machine's affair
+    least = min(passing)
+    assert 1 < least < 64
+    assert least <= max(1.3 * max(n for n in settings if n < least), 2)
 
 
 def test_an_unreachable_target(folder: Folder) -> None:

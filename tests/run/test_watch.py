@@ -100,7 +100,7 @@ def after(watch: Watch) -> list[int]:
 
 @pytest.fixture
 def watch(watched: Folder) -> Watch:
-    made = Watch(watched.path / "project.xml", Renderer)
+    made = Watch(watched.path / "project.xml", nau_py.load, Renderer)
     assert shown(made.start()) == [200, 200, 200]
     assert made.changed() == {}
     return made
@@ -188,7 +188,7 @@ def test_a_project_that_is_gone_and_comes_back(watched: Folder, watch: Watch) ->
 def test_a_project_that_is_wrong_from_the_start(watched: Folder) -> None:
     """Its libraries' and its own files are followed all the same."""
     change(watched, "lib.mlib", 'name="show" vs', 'name="shown" vs')
-    made = Watch(watched.path / "project.xml", Renderer)
+    made = Watch(watched.path / "project.xml", nau_py.load, Renderer)
     with pytest.raises(nau_py.ProjectError):
         made.start()
     change(watched, "lib.mlib", 'name="shown" vs', 'name="show" vs')
