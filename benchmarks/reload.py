@@ -2,7 +2,7 @@
 
 ``python benchmarks/reload.py [SIZE]`` copies the selective demo, follows it as ``nau-run --watch``
 does, and saves a shader, a ray program and the project file, five times each. It prints the medians
-beside a steady frame of the same run, as ratios: what is above 1 is the cost of taking in the change.
+beside a steady frame of the same run, as ratios: above 1 is what taking in the change costs.
 """
 
 from __future__ import annotations

@@ -67,6 +67,18 @@ class CostRun:
     chosen: Candidate | None
     """The answer to a target error or a time budget."""
 
+    def _repr_png_(self) -> bytes:
+        """The front, for notebooks."""
+        from nau_py.accuracy.page import front_png
+
+        return front_png(self.report)
+
+    def _repr_html_(self) -> str:
+        """The front, the answers and all numbers, for notebooks."""
+        from nau_py.accuracy.page import excerpt
+
+        return excerpt(self.report)
+
 
 class _Meter:
     """Turns what is done of the whole into a share."""

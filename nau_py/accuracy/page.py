@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from nau_py.accuracy.chart import Dot, scatter, to_png, to_svg
+from nau_py.accuracy.chart import Dot, Shape, scatter, to_png, to_svg
 from nau_py.accuracy.cost import CostRun
 from nau_py.accuracy.metrics import F64
 from nau_py.accuracy.report import CostReport, SettingCost
@@ -77,17 +77,17 @@ def dots(report: CostReport, region: str) -> tuple[list[Dot], list[int]]:
     return found, sorted(line, key=lambda i: found[i].x[0])
 
 
-def _plot(report: CostReport, region: str) -> tuple[list[object], str]:
+def _plot(report: CostReport, region: str) -> tuple[list[Shape], str]:
     where = "inside the mask" if region == "mask" else "of the whole picture"
     title = f"{report.project}: {report.measure} {where} against time"
     found, line = dots(report, region)
-    return list(scatter(found, line, title, "ms a frame", report.measure)), title
+    return scatter(found, line, title, "ms a frame", report.measure), title
 
 
 def front_png(report: CostReport) -> bytes:
     """The front as a picture for papers."""
     shapes, _ = _plot(report, report.region)
-    return to_png(shapes)  # type: ignore[arg-type]
+    return to_png(shapes)
 
 
 def _image(values: NDArray[np.uint8]) -> str:
@@ -239,13 +239,20 @@ def summary(report: CostReport) -> list[str]:
     return found + report.notes
 
 
+def excerpt(report: CostReport) -> str:
+    """The front, the answers and the table, as a part of another page."""
+    shapes, title = _plot(report, report.region)
+    said = "".join(f"<li>{escape(s)}</li>" for s in summary(report))
+    return f"<div>{to_svg(shapes, title)}<ul>{said}</ul>{_table(report)}</div>"
+
+
 def page(run: CostRun) -> str:
     """The whole page."""
     report = run.report
     plots = []
     for region in sorted(report.settings[0].errors, key=lambda r: r != report.region):
         shapes, title = _plot(report, region)
-        plots.append(to_svg(shapes, title))  # type: ignore[arg-type]
+        plots.append(to_svg(shapes, title))
     machine = ", ".join(f"{k} {v}" for k, v in report.machine.items())
     size = f"{report.size[0]} x {report.size[1]}"
     said = "".join(f"<li>{escape(s)}</li>" for s in summary(report))

@@ -37,6 +37,12 @@ class Plan:
     output: Resource = WINDOW
     """What the picture is read from."""
 
+    def _repr_html_(self) -> str:
+        """The graph of passes and targets, for notebooks."""
+        from nau_py.graph.export import to_svg
+
+        return to_svg(self)
+
     @property
     def running(self) -> list[Step]:
         return [step for step in self.steps if step.run]

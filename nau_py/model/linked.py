@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from html import escape
 from pathlib import Path
 
 from nau_py.model.attribute import Attribute
@@ -67,6 +68,22 @@ class Project:
         if width is None or height is None:
             return DEFAULT_SIZE
         return (width, height) if width > 0 and height > 0 else (512, 512)
+
+    def _repr_html_(self) -> str:
+        """Pipelines and passes, for notebooks."""
+        rows = []
+        for pipeline in self.pipelines:
+            mark = " (default)" if pipeline is self.default_pipeline else ""
+            for number, pass_ in enumerate(pipeline.passes):
+                first = f"{pipeline.name}{mark}" if number == 0 else ""
+                owner = self.target_of(pass_)
+                target = f"{owner[0]}::{owner[1].name}" if owner else "window"
+                cells = (first, pass_.name or "", pass_.pass_class, target)
+                rows.append("<tr>" + "".join(f"<td>{escape(c)}</td>" for c in cells) + "</tr>")
+        head = "".join(f"<th>{h}</th>" for h in ("pipeline", "pass", "class", "draws into"))
+        width, height = self.size
+        words = f"{self.name}: {width} x {height} pixels, {self.path}"
+        return f"<div><p>{escape(words)}</p><table><tr>{head}</tr>{''.join(rows)}</table></div>"
 
     @property
     def default_pipeline(self) -> Pipeline | None:

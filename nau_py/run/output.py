@@ -32,7 +32,8 @@ def to_bytes8(image: NDArray[Any]) -> NDArray[np.uint8]:
     return np.asarray(np.rint(np.clip(values, 0, 1) * 255), np.uint8)
 
 
-def _png(image: NDArray[Any]) -> bytes:
+def png(image: NDArray[Any]) -> bytes:
+    """A PNG of a picture, rows from the top."""
     pixels = to_bytes8(image)
     channels = pixels.shape[2] if pixels.ndim == 3 else 1
     if channels == 2:
@@ -88,7 +89,7 @@ def write_image(path: Path, image: NDArray[Any]) -> None:
     if ending == ".exr":
         data = _exr(path, image)
     else:
-        data = _png(image) if ending == ".png" else _npy(image)
+        data = png(image) if ending == ".png" else _npy(image)
     try:
         write_bytes(path, data)
     except OSError as problem:

@@ -28,9 +28,11 @@ from nau_py.passes.frame import (
     Session,
     no_progress,
 )
+from nau_py.run.output import png
 from nau_py.run.parameters import parse
 from nau_py.run.report import machine_facts, make_report
 from nau_py.run.scripts import MAX_REPEATS, Scripts, hooks
+from nau_py.run.show import frame_html
 from nau_py.run.turns import Turns
 from nau_py.scene.names import default_material_names
 from nau_py.scene.viewport import Rect
@@ -59,6 +61,14 @@ class Frame:
     report: dict[str, Any]
     samples: NDArray[np.int32] | None = None
     error: NDArray[np.float32] | None = None
+
+    def _repr_png_(self) -> bytes:
+        """The picture, for notebooks."""
+        return png(self.image)
+
+    def _repr_html_(self) -> str:
+        """The picture and what each pass cost, for notebooks."""
+        return frame_html(self.image, self.report)
 
 
 class Renderer:
