@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from nau_py.cli.common import FAILED, guarded, stop_if_unreadable, write_result
+from nau_py.cli.common import FAILED, USAGE, guarded, stop_if_unreadable, write_result
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
@@ -21,17 +21,33 @@ class Style(StrEnum):
     YAML = "yaml"
 
 
+class Kind(StrEnum):
+    """Schemas."""
+
+    JSON = "json"
+    LIBRARY = "json-library"
+    XSD = "xsd"
+
+
 @app.command()
 def fmt(
-    project: Annotated[Path, typer.Argument(help="Project file or material library.")],
+    project: Annotated[
+        Path | None, typer.Argument(help="Project file or material library.")
+    ] = None,
     to: Annotated[Style | None, typer.Option(help="Format; default the file's own.")] = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="File; else stdout.")
     ] = None,
+    schema: Annotated[Kind | None, typer.Option(help="Write a schema for editors instead.")] = None,
     check: Annotated[bool, typer.Option(help="Only say whether the file is formatted.")] = False,
     debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
 ) -> None:
     """Format a file. Comments are not kept."""
+    if schema is not None:
+        raise typer.Exit(guarded(lambda: _schema(schema, output), {}, debug))
+    if project is None:
+        sys.stderr.write("Missing argument 'PROJECT'. Try 'nau-fmt --help'.\n")
+        raise typer.Exit(USAGE)
     from nau_py.formats.load import YAML_SUFFIXES, is_library, load_library, load_project
     from nau_py.formats.write import format_node
 
@@ -53,6 +69,16 @@ def fmt(
         return 0
 
     raise typer.Exit(guarded(work, loaded.sources, debug))
+
+
+def _schema(kind: Kind, output: Path | None) -> int:
+    from nau_py.formats.schema import json_schema, xsd
+    from nau_py.model.attributes import Registry
+
+    registry = Registry()
+    made = xsd(registry) if kind is Kind.XSD else json_schema(registry, kind is Kind.LIBRARY)
+    write_result(output, made)
+    return 0
 
 
 def main() -> None:
