@@ -12,7 +12,7 @@ import pytest
 import nau_py
 
 PACKAGE = Path(nau_py.__file__).parent
-LEAVES = {"diagnostic", "errors", "files", "paths", "version"}
+LEAVES = {"diagnostic", "errors", "files", "html", "paths", "version"}
 ARROWS = {
     "model": set(),
     "formats": {"model"},
@@ -24,7 +24,7 @@ ARROWS = {
     "effects": {"model"},
     "passes": {"raster", "raytrace", "graph", "scene", "effects", "model"},
     "run": {"passes", "raster", "graph", "scene", "lint", "model"},
-    "accuracy": {"run", "passes", "raster", "graph", "lint", "model"},
+    "accuracy": {"run", "passes", "raster", "scene", "graph", "lint", "model"},
     "batch": set(),
     "cli": {
         "accuracy",

@@ -21,15 +21,12 @@ def apply(project: Project, pipeline: Pipeline, setting: Candidate, own: Candida
     """Write what differs from ``own`` into the project file; returns what was written, in words.
 
     Raises :class:`~nau_py.errors.ProjectError` for a knob that no project file can hold (mask,
-    scale, filter, format), or a file that is not XML; the file is then as it was.
+    scale, filter, format); the file is then as it was.
     """
     where = project.file.location
     path = Path(where.file)
     text = path.read_text(encoding="utf-8")
-    if path.suffix.lower() in (".yaml", ".yml"):
-        raise ProjectError(
-            error("E002", where, f"'{path}': settings are written into XML projects only")
-        )
+    yaml = path.suffix.lower() in (".yaml", ".yml")
     edits: list[tuple[int, int, str]] = []
     said: list[str] = []
     for name, value in setting.values:
@@ -40,7 +37,7 @@ def apply(project: Project, pipeline: Pipeline, setting: Candidate, own: Candida
             message = f"knob '{name}': no project file says it; only nau-cost turns it"
             raise ProjectError(error("E002", where, message))
         for node in found.nodes:
-            edits.append(_edit(text, node, found.attribute, value))
+            edits.append(_edit(text, node, found.attribute, value, yaml))
         said.append(f"{name} {own[name]} -> {value}")
     for begin, end, new in sorted(edits, reverse=True):
         text = text[:begin] + new + text[end:]
@@ -49,27 +46,33 @@ def apply(project: Project, pipeline: Pipeline, setting: Candidate, own: Candida
     return said
 
 
-def _edit(text: str, node: Node, attribute: str, value: Value) -> tuple[int, int, str]:
+def _edit(text: str, node: Node, attribute: str, value: Value, yaml: bool) -> tuple[int, int, str]:
     """(begin, end, new text) that gives ``attribute`` of ``node`` the value."""
     if isinstance(node, Pass) and attribute not in node.settings:
-        return _inserted(text, node, f'<{attribute} value="{value}" />')
+        return _inserted(text, node, attribute, value, yaml)
     if isinstance(node, Pass):
         begin = _offset(text, node.settings[attribute].location)
-        found = re.compile(r"value\s*=\s*(\"[^\"]*\"|'[^']*'|[^\s/>]+)").search(text, begin)
+        pattern = r":\s*([^\s,}#]+)" if yaml else r"value\s*=\s*(\"[^\"]*\"|'[^']*'|[^\s/>]+)"
+        found = re.compile(pattern).search(text, begin)
         assert found is not None, f"{attribute} has no value"
-        return found.start(1), found.end(1), f'"{value}"'
+        return found.start(1), found.end(1), str(value) if yaml else f'"{value}"'
     begin = _offset(text, node.where(attribute))
-    found = re.compile(r"[^\"'\s/>]+").match(text, begin)
+    found = re.compile(r"[^\"'\s/>,}]+").match(text, begin)
     assert found is not None, f"{attribute} has no value"
     return found.start(), found.end(), str(value)
 
 
-def _inserted(text: str, node: Node, element: str) -> tuple[int, int, str]:
-    """``element`` as the first one inside ``node``, indented as what follows it."""
-    end = text.index(">", _offset(text, node.location)) + 1
+def _inserted(
+    text: str, node: Node, attribute: str, value: Value, yaml: bool
+) -> tuple[int, int, str]:
+    """The attribute as the first thing inside ``node``, indented as what follows it."""
+    begin = _offset(text, node.location)
+    if yaml:
+        return begin, begin, f"{attribute}: {value}\n{' ' * (node.location.column - 1)}"
+    end = text.index(">", begin) + 1
     following = re.compile(r"\s*").match(text, end)
     blank = following.group() if following else "\n"
-    return end, end, blank + element
+    return end, end, f'{blank}<{attribute} value="{value}" />'
 
 
 def _offset(text: str, location: Location) -> int:

@@ -21,13 +21,16 @@ from nau_py.accuracy.refine import refine
 from nau_py.accuracy.report import SCHEMA, Answer, CostReport, ReferenceFacts, Verified
 from nau_py.accuracy.statistics import interval
 from nau_py.accuracy.worth import worth
-from nau_py.diagnostic import error
+from nau_py.diagnostic import Diagnostic, Severity, error
 from nau_py.errors import ProjectError
+from nau_py.lint.engine import lint
 from nau_py.model.knob import traced
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
+from nau_py.passes import pass_classes
 from nau_py.passes.frame import RunOptions
 from nau_py.run.choose import choose_pipeline
+from nau_py.scene.names import default_material_names
 
 RUNS = 5
 LEAST_SPP, MORE_SPP = 256, 8
@@ -131,9 +134,12 @@ def cost(
 ) -> CostRun:
     """Measure accuracy and time of ``project`` over the ladders of its knobs.
 
-    Raises :class:`~nau_py.errors.ProjectError` for knobs that do not exist, and what rendering
-    raises.
+    Raises :class:`~nau_py.errors.ProjectError` for a project with lint errors and for knobs that do
+    not exist, and what rendering raises.
     """
+    wrong = [d for d in found_by_lint(project) if d.severity is Severity.ERROR]
+    if wrong:
+        raise ProjectError(wrong)
     told = wishes(project)
     chosen = choose_pipeline(project, pipeline or told.pipeline)
     turned = ladders(project, chosen, asked.knobs)
@@ -142,8 +148,15 @@ def cost(
     every = candidates(start, turned, combine)
     spps = [_spp(project, chosen, c) for c in every]
     samples = asked.reference or told.reference or max(MORE_SPP * max(spps), LEAST_SPP)
-    masked = any(p.mask for p in traced(chosen.passes))
-    _check(project, samples, max(spps), asked.region == "mask" and not masked)
+    rays = traced(chosen.passes)
+    masked = any(p.mask for p in rays)
+    if rays:
+        _check_reference(project, samples, max(spps))
+    else:
+        samples = 1
+    if asked.region == "mask" and not masked:
+        message = "region 'mask' is asked for, but the raytrace pass has no mask"
+        raise ProjectError(error("A003", project.file.location, message))
     region = asked.region or ("mask" if masked else "picture")
     bench = Bench(project, chosen, options, size or project.size, frame)
     runs = max(asked.runs or told.runs or RUNS, 2)
@@ -154,7 +167,7 @@ def cost(
     whole = _weight(most, samples)
     later = 4 * weights[0] if asked.effects else 0.0
     meter.plan(whole + sum(weights) + later)
-    label = f"reference, {samples} spp"
+    label = f"reference, {samples} spp" if rays else "reference"
     truth = reference(
         bench, most, samples, _device(), lambda part: meter.told(label, whole, part), asked.keep
     )
@@ -199,14 +212,15 @@ def cost(
     return CostRun(report, truth, sweep.found, wanted)
 
 
-def _check(project: Project, samples: int, most: int, no_mask: bool) -> None:
-    where = project.file.location
+def found_by_lint(project: Project) -> list[Diagnostic]:
+    """What lint says of the project."""
+    return lint(project, pass_classes(), default_material_names(project))
+
+
+def _check_reference(project: Project, samples: int, most: int) -> None:
     if samples <= most:
         message = f"a reference of {samples} spp cannot judge {most} spp: ask for more"
-        raise ProjectError(error("A004", where, message))
-    if no_mask:
-        message = "region 'mask' is asked for, but the raytrace pass has no mask"
-        raise ProjectError(error("A003", where, message))
+        raise ProjectError(error("A004", project.file.location, message))
 
 
 def _targets(

@@ -17,9 +17,11 @@ from nau_py.accuracy.report import (
     TimeSpread,
     Verified,
 )
-from nau_py.accuracy.statistics import Interval, bias_and_variance, exponent, interval, spread
+from nau_py.accuracy.statistics import Interval, exponent, interval, spread
 
 MEASURES = ("mse", "rmse", "relmse", "psnr", "ssim", "flip")
+EQUAL = 1.001
+"""Errors in this ratio count as equal."""
 RANKED = ("rmse", "mse", "relmse")
 """Measures that settings are ranked by: those that are to be small."""
 
@@ -58,11 +60,6 @@ class Judge:
         less than twice the reference's own error, and says little of the candidate's."""
         own = self.truth.own_mse(self.region)
         return own > 0 and error_of(m, self.region, "mse").mean < 2 * own
-
-    def _split(self, m: Measured, region: str) -> tuple[float, float]:
-        assert m.moments is not None
-        where = self.truth.region(region)
-        return bias_and_variance(m.moments, self.truth.mean, self.truth.variance, where)
 
     def point(self, m: Measured) -> Point:
         """Median time in milliseconds, mean error."""
@@ -127,7 +124,7 @@ class Judge:
         )
 
     def _errors(self, m: Measured, region: str) -> RegionErrors:
-        bias2, variance = self._split(m, region)
+        bias2, variance = m.split[region]
         found = {
             name: estimate(error_of(m, region, name))
             for name in MEASURES
@@ -180,7 +177,7 @@ class Judge:
         for k, (time, value) in enumerate(points):
             others = [i for i in range(len(points)) if i != k]
             rest = [points[i] for i in others]
-            better, faster = at_time(rest, time), at_error(rest, value)
+            better, faster = at_time(rest, time), at_error(rest, value * EQUAL)
             if better is not None and rest[better][1] >= value:
                 better = None
             if faster is not None and rest[faster][0] >= time:

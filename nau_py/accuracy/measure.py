@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from nau_py.accuracy.candidate import Candidate, Prepared, prepare
 from nau_py.accuracy.metrics import F64, Errors, Mask, measure
 from nau_py.accuracy.picture import enlarged, mask_of, picture
-from nau_py.accuracy.statistics import Moments
+from nau_py.accuracy.statistics import Moments, bias_and_variance
 from nau_py.graph.resource import WINDOW
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
 from nau_py.passes.frame import RunOptions
 from nau_py.run.renderer import Frame, Renderer
 
+REGIONS = ("picture", "mask")
 STAGES = ("raster", "trace", "shade", "build", "read_back", "other")
 """Stages of a frame; ``set_up`` comes once, before the first."""
 Told = Callable[[float], None]
@@ -67,8 +68,10 @@ class Measured:
     rays: dict[str, int] = field(default_factory=dict)
     pixels: int = 0
     est_error: float | None = None
-    moments: Moments | None = None
-    last: F64 | None = None
+    split: dict[str, tuple[float, float]] = field(default_factory=dict)
+    """(bias², variance) of one run, by region."""
+    last: NDArray[np.float32] | None = None
+    """The last picture."""
     samples: NDArray[np.int32] | None = None
     passes: dict[str, float] = field(default_factory=dict)
     """Milliseconds of each pass that does not trace, last run."""
@@ -158,7 +161,7 @@ class Bench:
         prepared = self.prepared(candidate)
         done = 0
         renderer = self._renderer(prepared, lambda part: told(done, part))
-        found = Measured(candidate, moments=Moments(reference.mean.shape))
+        found, moments = Measured(candidate), Moments(reference.mean.shape)
         try:
             warm = renderer.render(self.frame)
             found.set_up_ms = warm.report["setup_ms"]
@@ -168,26 +171,30 @@ class Bench:
                 done = run + 1
                 told(done, 0.0)
                 frame = renderer.again(first_seed + run)
-                self._note(found, frame, renderer, reference)
+                image = enlarged(picture(frame, renderer.plan.output == WINDOW), reference.shape)
+                moments.add(image)
+                self._note(found, frame, image, renderer.capture_ms, reference)
             told(runs + 1, 0.0)
         finally:
             renderer.close()
+        for region in REGIONS:
+            where = reference.region(region)
+            found.split[region] = bias_and_variance(
+                moments, reference.mean, reference.variance, where
+            )
         return found
 
     def _note(
-        self, found: Measured, frame: Frame, renderer: Renderer, reference: Reference
+        self, found: Measured, frame: Frame, image: F64, capture_ms: float, reference: Reference
     ) -> None:
         report = frame.report
-        image = enlarged(picture(frame, renderer.plan.output == WINDOW), reference.shape)
-        found.last, found.samples = image, frame.samples
-        assert found.moments is not None
-        found.moments.add(image)
+        found.last, found.samples = image.astype(np.float32), frame.samples
         found.nonfinite += int((~np.isfinite(image).all(axis=2)).sum())
-        regions = {name: reference.region(name) for name in ("picture", "mask")}
+        regions = {name: reference.region(name) for name in REGIONS}
         for region, errors in measure(image, reference.mean, regions).items():
             found.errors.setdefault(region, []).append(errors)
         found.ms.append(report["frames"][0]["ms"])
-        for name, ms in stage_times(report, renderer.capture_ms).items():
+        for name, ms in stage_times(report, capture_ms).items():
             found.stages.setdefault(name, []).append(ms)
         found.rays = report["totals"]["rays"]
         found.effects = report["effects"]

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import base64
-import io
-from html import escape
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
+import nau_py.html as html
 from nau_py.accuracy.chart import Dot, Shape, scatter, to_png, to_svg
 from nau_py.accuracy.cost import CostRun
 from nau_py.accuracy.metrics import F64
 from nau_py.accuracy.report import CostReport, SettingCost
+from nau_py.accuracy.tables import Grid, comparisons, effects, sentences, settings
+from nau_py.html import Markup
+from nau_py.run.output import png
 
 CROP = 96
 """Side of a crop, pixels."""
@@ -28,27 +29,16 @@ _STAGES = {
 }
 _PASSES = ("#424a53", "#6e7781", "#8c959f", "#afb8c1")
 _STYLE = """
-body { font: 15px/1.5 system-ui, sans-serif; color: #1b1f24; margin: 2rem auto; max-width: 72rem;
-  padding: 0 1rem; }
-h1 { font-size: 1.5rem; } h2 { font-size: 1.15rem; margin-top: 2.2rem; }
-table { border-collapse: collapse; width: 100%; font-size: 13px; }
-th, td { padding: .25rem .5rem; border-bottom: 1px solid #d8dee4; text-align: right; }
-th:first-child, td:first-child { text-align: left; } td { white-space: nowrap; }
-.wide { overflow-x: auto; }
-.front td:first-child { font-weight: 600; } .grey { color: #57606a; }
+.front td:first-child { font-weight: 600; }
 .bar { display: flex; height: 16px; } .bar span { display: block; }
 .row { display: grid; grid-template-columns: 15rem 1fr 5rem; gap: .6rem; align-items: center;
   font-size: 13px; margin: 2px 0; }
 .row > :last-child { text-align: right; }
 .crops { display: flex; flex-wrap: wrap; gap: .8rem; }
 figure { margin: 0; font-size: 12px; width: 210px; } figure img { width: 100%;
-  image-rendering: pixelated; display: block; margin-bottom: 2px; }
+  image-rendering: pixelated; display: block; margin-bottom: 2px; outline: 1px solid #d8dee4; }
 .key span { display: inline-block; width: .8rem; height: .8rem; margin: 0 .3rem 0 1rem; }
 """
-
-
-def _number(value: float | None, digits: int = 3) -> str:
-    return "" if value is None else f"{value:.{digits}g}"
 
 
 def dots(report: CostReport, region: str) -> tuple[list[Dot], list[int]]:
@@ -90,15 +80,9 @@ def front_png(report: CostReport) -> bytes:
     return to_png(shapes)
 
 
-def _image(values: NDArray[np.uint8]) -> str:
-    stream = io.BytesIO()
-    Image.fromarray(values).save(stream, "PNG")
-    return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode()
-
-
-def _bytes(image: F64) -> NDArray[np.uint8]:
+def _bytes(image: NDArray[Any]) -> NDArray[np.uint8]:
     shown = np.nan_to_num(image, nan=1.0, posinf=1.0, neginf=0.0)
-    return np.rint(np.clip(shown, 0, 1) * 255).astype(np.uint8)
+    return np.asarray(np.rint(np.clip(shown, 0, 1) * 255), np.uint8)
 
 
 def worst(difference: F64, side: int = CROP) -> tuple[int, int]:
@@ -156,8 +140,8 @@ def _small(values: NDArray[np.uint8], most: int = 420) -> NDArray[np.uint8]:
 
 
 def _figure(label: str, images: list[NDArray[np.uint8]]) -> str:
-    shown = "".join(f'<img src="{_image(i)}" alt="">' for i in images)
-    return f"<figure>{shown}{escape(label)}</figure>"
+    shown = "".join(html.picture(png(i), label) for i in images)
+    return f"<figure>{shown}{html.text(label)}</figure>"
 
 
 def _bars(report: CostReport) -> str:
@@ -165,85 +149,34 @@ def _bars(report: CostReport) -> str:
     names = list(dict.fromkeys(n for s in report.settings for n in s.passes))
     colours = {n: _PASSES[k % len(_PASSES)] for k, n in enumerate(names)} | _STAGES
     most = max(sum(s.stages.values()) for s in report.settings)
-    keys = "".join(f'<span style="background:{c}"></span>{escape(n)}' for n, c in colours.items())
+    keys = "".join(
+        f'<span style="background:{c}"></span>{html.text(n)}' for n, c in colours.items()
+    )
     rows = [f'<p class="key grey">{keys}</p>']
     for s in report.settings:
         times = s.passes | {name: s.stages.get(name, 0.0) for name in _STAGES}
         bars = "".join(
             f'<span style="width:{100 * ms / most:.2f}%;background:{colours[name]}" '
-            f'title="{escape(name)} {ms:.1f} ms"></span>'
+            f'title="{html.text(name)} {ms:.1f} ms"></span>'
             for name, ms in times.items()
         )
         rows.append(
-            f'<div class="row"><span>{escape(s.label)}</span><span class="bar">{bars}</span>'
+            f'<div class="row"><span>{html.text(s.label)}</span><span class="bar">{bars}</span>'
             f"<span>{sum(times.values()):.0f} ms</span></div>"
         )
     return "".join(rows)
 
 
-def _table(report: CostReport) -> str:
-    regions = list(report.settings[0].errors)
-    head = ["setting", "ms", "(least to most)", "rays"]
-    for region in regions:
-        head += [f"{region}: rmse", "± 95 %", "relMSE", "PSNR", "SSIM", "FLIP", "bias", "noise"]
-    rows = ["<tr>" + "".join(f"<th>{escape(h)}</th>" for h in [*head, "est. error"]) + "</tr>"]
-    for s in report.settings:
-        cells = [
-            escape(s.label) + (" (as it is)" if s.base else ""),
-            f"{s.time.median:.0f}",
-            f"{s.time.range[0]:.0f} to {s.time.range[1]:.0f}",
-            f"{sum(s.rays.values()):,}",
-        ]
-        for region in regions:
-            e = s.errors[region]
-            half = (e.rmse.interval[1] or 0) - (e.rmse.mean or 0)
-            cells += [
-                _number(e.rmse.mean),
-                _number(half, 2),
-                _number(e.relmse.mean),
-                _number(e.psnr.mean),
-                _number(e.ssim.mean, 4),
-                _number(e.flip.mean) if e.flip else "",
-                _number(None if e.bias2 is None else e.bias2**0.5),
-                _number(None if e.variance is None else e.variance**0.5),
-            ]
-        cells.append(_number(s.est_error))
-        kind = ' class="front"' if s.on_front else ""
-        rows.append(f"<tr{kind}>" + "".join(f"<td>{c}</td>" for c in cells) + "</tr>")
-    return f"<div class='wide'><table>{''.join(rows)}</table></div>"
-
-
-def summary(report: CostReport) -> list[str]:
-    """The answers in sentences."""
-    where = "inside the mask" if report.region == "mask" else "over the whole picture"
-    own = report.reference.own_rmse.get(report.region)
-    found = [
-        f"Reference: {report.reference.label}; its own error is about {_number(own, 2)} ({where}, "
-        "root mean square)."
-    ]
-    if report.knee:
-        found.append(f"Knee of the front: {report.knee}.")
-    if report.halving:
-        found.append(
-            f"To halve the error by more samples costs {report.halving:.1f} times the time of "
-            "tracing and shading."
-        )
-    found += [f"{a.question[0].upper()}{a.question[1:]}: {a.text}." for a in report.answers]
-    for v in report.verified:
-        low, high = v.found.interval
-        kept = "kept" if v.kept else "NOT kept"
-        found.append(
-            f"Promise '{v.promise}' by {v.setting}, rendered again with new seeds: "
-            f"{_number(v.found.mean)} ({_number(low)} to {_number(high)}), {kept}."
-        )
-    return found + report.notes
+def _grid(grid: Grid) -> Markup:
+    kinds = ["front" if k in grid.strong else "" for k in range(len(grid.rows))]
+    return html.table(grid.head, grid.rows, kinds)
 
 
 def excerpt(report: CostReport) -> str:
     """The front, the answers and the table, as a part of another page."""
     shapes, title = _plot(report, report.region)
-    said = "".join(f"<li>{escape(s)}</li>" for s in summary(report))
-    return f"<div>{to_svg(shapes, title)}<ul>{said}</ul>{_table(report)}</div>"
+    parts = (to_svg(shapes, title), html.items(sentences(report)), _grid(settings(report)))
+    return f"<div>{''.join(parts)}</div>"
 
 
 def page(run: CostRun) -> str:
@@ -254,61 +187,27 @@ def page(run: CostRun) -> str:
         shapes, title = _plot(report, region)
         plots.append(to_svg(shapes, title))
     machine = ", ".join(f"{k} {v}" for k, v in report.machine.items())
-    size = f"{report.size[0]} x {report.size[1]}"
-    said = "".join(f"<li>{escape(s)}</li>" for s in summary(report))
+    about = (
+        f"{report.size[0]} x {report.size[1]} pixels, frame {report.frame}, {report.runs} runs of "
+        f"each setting, a seed each; {machine}"
+    )
+    worth = effects(report)
+    title = f"{report.project}, {report.pipeline}: accuracy against time"
     parts = [
-        f"<h1>{escape(report.project)}, {escape(report.pipeline)}: accuracy against time</h1>",
-        f'<p class="grey">{size} pixels, frame {report.frame}, {report.runs} runs of each setting, '
-        f"a seed each; {escape(machine)}</p>",
-        f"<ul>{said}</ul>",
+        html.tag("h1", title),
+        html.tag("p", about, "grey"),
+        html.items(sentences(report)),
         "<h2>Front</h2><p>Filled: no other setting is both faster and more accurate. Bars: 95 % "
         "interval of the error, least and greatest time.</p>",
         *plots,
-        f"<h2>Equal time, equal error</h2>{_comparisons(report)}",
+        f"<h2>Equal time, equal error</h2>{_grid(comparisons(report))}",
         f"<h2>Where the time goes</h2>{_bars(report)}",
         f"<h2>Where it is worst</h2>{_crops(run)}",
         f"<h2>Whole picture</h2>{_maps(run)}",
-        f"<h2>All numbers</h2>{_table(report)}",
+        f"<h2>All numbers</h2>{_grid(settings(report))}",
         "<p class='grey'>relMSE = mean((x - r)² / (r + 0.01)²). Bias and noise are roots of the "
         "parts of the mean squared error of one run, with the reference's own error taken off.</p>",
-        _effects(report),
     ]
-    body = "\n".join(parts)
-    title = escape(f"{report.project}: accuracy against time")
-    return (
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{title}</title>'
-        f"<style>{_STYLE}</style></head><body>{body}</body></html>\n"
-    )
-
-
-def _comparisons(report: CostReport) -> str:
-    rows = [
-        "<tr><th>setting</th><th>in no more time</th><th>error</th><th>with no more error</th>"
-        "<th>time</th></tr>"
-    ]
-    for c in report.comparisons:
-        cells = [
-            c.setting,
-            c.at_equal_time or "nothing is better",
-            f"{c.error_ratio:.2f} x" if c.error_ratio is not None else "",
-            c.at_equal_error or "nothing is faster",
-            f"{c.time_ratio:.2f} x" if c.time_ratio is not None else "",
-        ]
-        rows.append("<tr>" + "".join(f"<td>{escape(c)}</td>" for c in cells) + "</tr>")
-    return f"<table>{''.join(rows)}</table>"
-
-
-def _effects(report: CostReport) -> str:
-    if not report.effects:
-        return ""
-    rows = [
-        "<tr><th>effect</th><th>called for</th><th>rays</th><th>ms</th><th>rmse</th>"
-        "<th>largest</th><th>pixels</th></tr>"
-    ]
-    for e in report.effects:
-        rows.append(
-            f"<tr><td>{escape(e.effect)}</td><td>{'yes' if e.called_for else 'no'}</td>"
-            f"<td>{e.rays:,}</td><td>{e.ms:.0f}</td><td>{e.rmse:.3g}</td><td>{e.largest:.3g}</td>"
-            f"<td>{e.pixels:,}</td></tr>"
-        )
-    return f"<h2>What each effect is worth</h2><table>{''.join(rows)}</table>"
+    if worth is not None:
+        parts.append(html.tag("h2", worth.title) + _grid(worth))
+    return html.document(title, parts, _STYLE)

@@ -2,47 +2,33 @@
 
 from __future__ import annotations
 
-import base64
 import io
 from collections.abc import Sequence
-from html import escape
 from typing import Any
 
 from PIL import Image
 
+import nau_py.html as html
 from nau_py.batch.grade import Limits, Result
+from nau_py.html import Markup
 
 _MOST = 480
 """Longest side of a picture, pixels."""
-_STYLE = """
-body { font: 15px/1.5 system-ui, sans-serif; color: #1b1f24; margin: 2rem auto; max-width: 68rem;
-  padding: 0 1rem; }
-h1 { font-size: 1.5rem; } h2 { font-size: 1.1rem; margin-top: 2rem; }
-table { border-collapse: collapse; font-size: 14px; }
-th, td { padding: .2rem .7rem; border-bottom: 1px solid #d8dee4; text-align: right; }
-th:first-child, td:first-child, td.text { text-align: left; }
-.rendered { color: #1a7f37; } .wrong { color: #b35900; } .stopped { color: #cf222e; }
-.grey { color: #57606a; } pre { background: #f6f8fa; padding: .6rem; overflow-x: auto; }
-img { max-width: 100%; display: block; margin: .5rem 0; } li { margin: .15rem 0; }
-code { background: #f6f8fa; padding: 0 .2rem; }
-"""
+_KINDS = {"rendered": "good", "wrong": "warn", "stopped": "bad"}
+_SEVERITIES = {"error": "bad", "warning": "warn"}
+_STYLE = "img { max-width: 100%; display: block; margin: .5rem 0; } td { white-space: normal; }"
 
 
 def page(title: str, results: Sequence[Result], limits: Limits) -> str:
     """A table of all projects, then each with its picture, passes and diagnostics."""
     good = sum(1 for r in results if r.status == "rendered")
-    parts = [
-        f"<h1>{escape(title)}</h1>",
-        f"<p>{good} of {len(results)} projects rendered. Each ran by itself, for at most "
-        f"{limits.seconds:g} s and {limits.megabytes:g} MB.</p>",
-        _summary(results),
-        *(_section(k, r) for k, r in enumerate(results)),
-    ]
-    body = "\n".join(parts)
-    return (
-        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{escape(title)}</title>'
-        f"<style>{_STYLE}</style></head><body>{body}</body></html>\n"
+    about = (
+        f"{good} of {len(results)} projects rendered. Each ran by itself, for at most "
+        f"{limits.seconds:g} s and {limits.megabytes:g} MB."
     )
+    sections = [_section(k, r) for k, r in enumerate(results)]
+    parts = [html.tag("h1", title), html.tag("p", about), _summary(results), *sections]
+    return html.document(title, parts, _STYLE)
 
 
 def _totals(result: Result) -> tuple[float | None, int]:
@@ -53,69 +39,66 @@ def _totals(result: Result) -> tuple[float | None, int]:
     return frames[-1]["ms"], sum(result.report["totals"]["rays"].values())
 
 
-def _summary(results: Sequence[Result]) -> str:
-    rows = [
-        "<tr><th>project</th><th>status</th><th>errors</th><th>warnings</th><th>ms a frame</th>"
-        "<th>rays</th><th>s in all</th></tr>"
-    ]
+def _summary(results: Sequence[Result]) -> Markup:
+    rows = []
     for k, r in enumerate(results):
         ms, rays = _totals(r)
-        cells = [
-            f'<td><a href="#p{k}">{escape(r.name)}</a></td>',
-            f'<td class="{r.status} text">{r.status}</td>',
-            *(f"<td>{n or ''}</td>" for n in (r.errors, r.warnings)),
-            f"<td>{'' if ms is None else f'{ms:,.0f}'}</td>",
-            f"<td>{f'{rays:,}' if rays else ''}</td>",
-            f"<td>{r.seconds:.1f}</td>",
-        ]
-        rows.append(f"<tr>{''.join(cells)}</tr>")
-    return f"<table>{''.join(rows)}</table>"
+        rows.append(
+            (
+                Markup(f'<a href="#p{k}">{html.text(r.name)}</a>'),
+                html.tag("span", r.status, _KINDS[r.status]),
+                str(r.errors or ""),
+                str(r.warnings or ""),
+                "" if ms is None else f"{ms:,.0f}",
+                f"{rays:,}" if rays else "",
+                f"{r.seconds:.1f}",
+            )
+        )
+    head = ("project", "status", "errors", "warnings", "ms a frame", "rays", "s in all")
+    return html.table(head, rows)
 
 
 def _section(number: int, result: Result) -> str:
-    parts = [f'<h2 id="p{number}">{escape(result.name)}</h2>']
+    parts = [f'<h2 id="p{number}">{html.text(result.name)}</h2>']
     if result.why:
-        parts.append(
-            f'<p class="{result.status}">{escape(result.status)}: {escape(result.why)}</p>'
-        )
+        parts.append(html.tag("p", f"{result.status}: {result.why}", _KINDS[result.status]))
     if result.picture is not None:
-        parts.append(f'<img src="{_small(result.picture)}" alt="picture of {escape(result.name)}">')
+        parts.append(html.picture(_small(result.picture), f"picture of {result.name}"))
     if result.report is not None:
         parts.append(_passes(result.report))
     if result.diagnostics:
-        items = "".join(_diagnostic(d) for d in result.diagnostics)
-        parts.append(f"<ul>{items}</ul>")
+        parts.append(html.items(_diagnostic(d) for d in result.diagnostics))
     if result.status != "rendered" and result.said.strip():
-        parts.append(f"<pre>{escape(result.said.strip())}</pre>")
+        parts.append(html.tag("pre", result.said.strip()))
     return "\n".join(parts)
 
 
-def _passes(report: dict[str, Any]) -> str:
-    rows = ["<tr><th>pass</th><th>class</th><th>ms</th><th>rays</th><th>est. error</th></tr>"]
+def _passes(report: dict[str, Any]) -> Markup:
+    rows = []
     for item in report["frames"][-1]["passes"]:
-        rays = sum(item["rays"].values())
-        error = item.get("est_error")
+        rays, error = sum(item["rays"].values()), item.get("est_error")
         left = f" (left out: {item['reason']})" if item["status"] != "run" else ""
         rows.append(
-            f"<tr><td>{escape(item['name'] + left)}</td><td>{escape(item['class'])}</td>"
-            f"<td>{item['ms']:,.1f}</td><td>{f'{rays:,}' if rays else ''}</td>"
-            f"<td>{'' if error is None else f'{error:.4f}'}</td></tr>"
+            (
+                item["name"] + left,
+                item["class"],
+                f"{item['ms']:,.1f}",
+                f"{rays:,}" if rays else "",
+                "" if error is None else f"{error:.4f}",
+            )
         )
-    return f"<table>{''.join(rows)}</table>"
+    return html.table(("pass", "class", "ms", "rays", "est. error"), rows)
 
 
-def _diagnostic(d: dict[str, Any]) -> str:
-    place = f"{d['file']}:{d['line']}:{d['column']}"
-    kind = {"error": "stopped", "warning": "wrong"}.get(str(d["severity"]), "grey")
-    return (
-        f'<li><span class="{kind}">{escape(str(d["severity"]))} {escape(str(d["rule"]))}</span> '
-        f"<code>{escape(place)}</code> {escape(str(d['message']))}</li>"
-    )
+def _diagnostic(d: dict[str, Any]) -> Markup:
+    kind = html.tag("span", f"{d['severity']} {d['rule']}", _SEVERITIES.get(d["severity"], "grey"))
+    place = html.tag("code", f"{d['file']}:{d['line']}:{d['column']}")
+    return Markup(f"{kind} {place} {html.text(d['message'])}")
 
 
-def _small(picture: bytes) -> str:
+def _small(picture: bytes) -> bytes:
     image = Image.open(io.BytesIO(picture))
     image.thumbnail((_MOST, _MOST))
     stream = io.BytesIO()
     image.save(stream, "PNG")
-    return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode()
+    return stream.getvalue()

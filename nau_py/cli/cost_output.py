@@ -18,6 +18,7 @@ from nau_py.model.location import NOWHERE
 if TYPE_CHECKING:
     from nau_py.accuracy.cost import CostRun
     from nau_py.accuracy.report import CostReport
+    from nau_py.accuracy.tables import Grid
 
 
 @contextmanager
@@ -61,56 +62,23 @@ def whole_progress(quiet: bool) -> Iterator[Callable[[str, float], None]]:
 
 def print_cost(report: CostReport) -> None:
     """The table of settings, and the answers."""
-    from nau_py.accuracy.page import summary
+    from nau_py.accuracy.tables import effects, sentences, settings
 
     console = Console(width=None if Console().is_terminal else 160)
-    table = Table(title=f"{report.project}: {report.pipeline}", title_justify="left")
-    table.add_column("setting")
-    for name in ("ms", "least to most", "rays"):
-        table.add_column(name, justify="right")
-    regions = list(report.settings[0].errors)
-    for region in regions:
-        table.add_column(f"{region}: rmse", justify="right")
-        for name in ("95 %", "relMSE", "bias"):
-            table.add_column(name, justify="right")
-    table.add_column("front")
-    for s in report.settings:
-        cells = [
-            s.label + (" (as it is)" if s.base else ""),
-            f"{s.time.median:,.0f}",
-            f"{s.time.range[0]:,.0f} to {s.time.range[1]:,.0f}",
-            f"{sum(s.rays.values()):,}",
-        ]
-        for region in regions:
-            e = s.errors[region]
-            half = (e.rmse.interval[1] or 0) - (e.rmse.mean or 0)
-            bias = "" if e.bias2 is None else f"{e.bias2**0.5:.4f}"
-            cells += [f"{e.rmse.mean or 0:.4f}", f"±{half:.2g}", f"{e.relmse.mean or 0:.4g}", bias]
-        mark = "better than the reference" if s.better_than_reference else ""
-        table.add_row(*cells, "yes" if s.on_front else mark)
-    console.print(table)
-    for line in summary(report):
+    console.print(_table(settings(report, brief=True), f"{report.project}: {report.pipeline}"))
+    for line in sentences(report):
         console.print(line, highlight=False)
-    if report.effects:
-        console.print(_effects(report))
+    worth = effects(report)
+    if worth is not None:
+        console.print(_table(worth, worth.title))
 
 
-def _effects(report: CostReport) -> Table:
-    table = Table(title="What each effect is worth", title_justify="left")
-    table.add_column("without")
-    table.add_column("called for")
-    for name in ("rays saved", "ms saved", "rmse", "largest", "pixels"):
-        table.add_column(name, justify="right")
-    for e in report.effects:
-        table.add_row(
-            e.effect,
-            "yes" if e.called_for else "no",
-            f"{e.rays:,}",
-            f"{e.ms:,.0f}",
-            f"{e.rmse:.4g}",
-            f"{e.largest:.4g}",
-            f"{e.pixels:,}",
-        )
+def _table(grid: Grid, title: str) -> Table:
+    table = Table(title=title, title_justify="left")
+    for number, name in enumerate(grid.head):
+        table.add_column(name, justify="right" if number else "left")
+    for row in grid.rows:
+        table.add_row(*row)
     return table
 
 

@@ -59,7 +59,7 @@ def print_table(report: dict[str, Any], explain: bool) -> None:
         console.print(f"no frame after {frame['index']}: {report['ended']}")
     if report["nonfinite"]:
         console.print(f"{report['nonfinite']:,} samples were not finite")
-    if explain:
+    if explain and report["effects"]:
         console.print(_effects(report["effects"]))
     for item in frame["passes"]:
         for note in item.get("notes", []):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from html import escape
 from pathlib import Path
 
+import nau_py.html as html
 from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import Registry
 from nau_py.model.library import DEFAULT_LIBRARY, MaterialLibrary
@@ -78,12 +78,10 @@ class Project:
                 first = f"{pipeline.name}{mark}" if number == 0 else ""
                 owner = self.target_of(pass_)
                 target = f"{owner[0]}::{owner[1].name}" if owner else "window"
-                cells = (first, pass_.name or "", pass_.pass_class, target)
-                rows.append("<tr>" + "".join(f"<td>{escape(c)}</td>" for c in cells) + "</tr>")
-        head = "".join(f"<th>{h}</th>" for h in ("pipeline", "pass", "class", "draws into"))
+                rows.append((first, pass_.name or "", pass_.pass_class, target))
         width, height = self.size
-        words = f"{self.name}: {width} x {height} pixels, {self.path}"
-        return f"<div><p>{escape(words)}</p><table><tr>{head}</tr>{''.join(rows)}</table></div>"
+        about = html.tag("p", f"{self.name}: {width} x {height} pixels, {self.path}")
+        return f"<div>{about}{html.table(('pipeline', 'pass', 'class', 'draws into'), rows)}</div>"
 
     @property
     def default_pipeline(self) -> Pipeline | None:

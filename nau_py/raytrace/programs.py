@@ -172,7 +172,8 @@ class ProgramLoader:
         try:
             # not through the loader: its bytecode is told apart by size and whole seconds only,
             # and would stand in the project's folder
-            exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
+            code = compile(path.read_bytes(), str(path), "exec", dont_inherit=True)
+            exec(code, module.__dict__)
         except SyntaxError as bug:
             place = Location(str(path), bug.lineno or 1, bug.offset or 1)
             raise ProgramError(error("T010", place, f"{label}: {bug.msg}")) from bug

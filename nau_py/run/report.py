@@ -135,6 +135,7 @@ def joined(reports: list[dict[str, Any]]) -> dict[str, Any]:
         | ended
         | {
             "frames": [frame for report in reports for frame in report["frames"]],
+            "effects": reports[-1]["effects"],
             "totals": {
                 "ms": round(sum(r["totals"]["ms"] for r in reports), 3),
                 "rays": rays,

@@ -362,6 +362,35 @@ def test_apply_changes_what_it_must(folder: Folder) -> None:
         apply(project, pipeline, start.but("format", "half"), start)
 
 
+def test_apply_in_yaml(folder: Folder) -> None:
+    """An existing value and a new one; every other line stays."""
+    text = (PROJECTS / "selective" / "project.yaml").read_text()
+    folder.write("project.yaml", text)
+    project = folder.load("project.yaml")
+    pipeline = choose_pipeline(project, None)
+    turned = ladders(project, pipeline, {"spp": "8", "light-samples": "4"})
+    start = base(project, pipeline, turned)
+    apply(project, pipeline, start.but("spp", 23).but("light-samples", 4), start)
+    before, after = text.splitlines(), (folder.path / "project.yaml").read_text().splitlines()
+    assert [line.strip("- ") for line in after if line not in before] == [
+        "LIGHT_SAMPLES: 4",
+        "name: trace",
+        "RAYS_PER_PIXEL: 23",
+    ]
+    passes = {p.name: p for p in choose_pipeline(folder.load("project.yaml"), None).passes}
+    assert passes["trace"].get("RAYS_PER_PIXEL") == (23,)
+    assert passes["trace"].get("LIGHT_SAMPLES") == (4,)
+
+
+def test_a_wrong_project_is_said_first(folder: Folder) -> None:
+    project = penumbra(folder)
+    file = folder.path / "project.xml"
+    file.write_text(file.read_text().replace("<RAYS_PER_PIXEL", "<RAYS_PER_PIXL"))
+    project = folder.load()
+    with pytest.raises(nau_py.ProjectError, match="RAYS_PER_PIXL"):
+        run(project, knobs={"spp": "1"})
+
+
 def test_wrong_knobs_are_all_said(folder: Folder) -> None:
     with pytest.raises(nau_py.ProjectError) as caught:
         run(penumbra(folder), knobs={"ssp": "1", "depth": "0", "mask": "all"})

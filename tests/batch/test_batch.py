@@ -77,7 +77,9 @@ def test_each_has_its_status(graded: tuple[str, subprocess.CompletedProcess[str]
     assert done.returncode == 1
     assert "1 of 8 projects rendered" in page
     found = dict(
-        re.findall(r'<a href="#p\d+">(\w+)/project\.xml</a></td><td class="(\w+) text">', page)
+        re.findall(
+            r'<a href="#p\d+">(\w+)/project\.xml</a></td><td><span class="\w+">(\w+)</span>', page
+        )
     )
     assert found == {
         "ana": "rendered",
