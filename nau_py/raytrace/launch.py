@@ -86,9 +86,10 @@ class Estimate:
     @property
     def error(self) -> F64:
         """Estimated standard error of each pixel's colour, root mean square over RGB, float64
-        (n,); infinite below two samples. From the variance of the means of batches (8 of
-        16 samples, 16 of 32 and more) where every launch took 16 samples or more, else from that of
-        the samples."""
+        (n,); infinite below two samples. From the variance of the samples or, where every
+        launch took 16 of them or more, from that of the means of batches (8 of 16 samples, 16 of
+        32 and more) if that is less: a batch of a low-discrepancy sequence is stratified by itself,
+        one of a grid that is filled row by row is a clump."""
         if len(self.squares) < len(self.number):
             return np.full(len(self.number), np.inf)
         n = self.number.astype(np.float64)
@@ -97,7 +98,7 @@ class Estimate:
             found = np.sqrt(variance / (n - 1) / n)
             means = np.sqrt(self.batched[:, 0]) / n
         told = (self.batched[:, 1] == n) & (n > 0)
-        return np.where(told, means, np.where(n > 1, found, np.inf))
+        return np.where(told, np.minimum(means, found), np.where(n > 1, found, np.inf))
 
 
 @dataclass(slots=True)

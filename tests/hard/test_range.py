@@ -92,6 +92,21 @@ def test_variance_firefly() -> None:
     assert sums(values[:1000]).unreliable.tolist() == [False]
 
 
+def test_error_of_batches() -> None:
+    """The error of a mean of 64, by batches of four where those are better than single samples:
+    (x, 1 - x, y, 1 - y) always has the mean 1/2, so no error is left; sorted samples are clumps, and
+    count one by one."""
+    random = np.random.default_rng(4).random(32)
+    balanced = np.stack([random, 1 - random], axis=1).reshape(-1)
+    assert sums(balanced).error[0] < 1e-7
+    assert sums(balanced[:64]).error[0] < 1e-7
+    clumps = np.sort(np.random.default_rng(5).random(64))
+    expected = clumps.std(ddof=1) / 8
+    assert sums(clumps).error[0] == pytest.approx(expected, rel=1e-5)
+    few = clumps[:15]
+    assert sums(few).error[0] == pytest.approx(few.std(ddof=1) / np.sqrt(15), rel=1e-5)
+
+
 def test_merged_sums() -> None:
     """In two parts, the same as in one."""
     values = np.random.default_rng(3).random(5000)
