@@ -77,10 +77,19 @@ class PassFacts:
         return found + [(m, p) for m in self.materials for p in (*m.closest, *m.any_hit)]
 
 
-@lru_cache(maxsize=256)
 def kinds_sent(path: Path, proc: str) -> frozenset[str]:
     """The kinds of rays that a Python program names in its calls of ``trace``, and what functions
     of its file that it calls name. Reads the file, runs nothing; empty where it has no parse."""
+    try:
+        found = path.stat()
+    except OSError:
+        return frozenset()
+    return _kinds_sent(path, proc, found.st_mtime_ns, found.st_size)
+
+
+@lru_cache(maxsize=256)
+def _kinds_sent(path: Path, proc: str, time: int, size: int) -> frozenset[str]:
+    """Once for each version of a file."""
     try:
         tree = ast.parse(path.read_bytes(), str(path))
     except (OSError, SyntaxError, ValueError):

@@ -124,6 +124,9 @@ def test_kinds_of_a_python_program(tmp_path: Path) -> None:
     assert kinds_sent(file, "lit") == {"shadow"}
     assert kinds_sent(file, "plain") == frozenset()
     assert kinds_sent(file, "absent") == frozenset()
+    file.write_text("def plain(hits):\n    return hits.trace('R', 0, kind='occlusion')\n")
+    assert kinds_sent(file, "plain") == {"occlusion"}
+    assert kinds_sent(tmp_path / "none.py", "plain") == frozenset()
 
 
 def test_a_python_program_calls_for_what_it_sends() -> None:
