@@ -7,7 +7,7 @@ import os
 import signal
 import subprocess
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic, sleep
@@ -32,8 +32,14 @@ class Ended:
     stopped: str = ""
 
 
-def run_limited(words: Sequence[str], seconds: float, megabytes: float) -> Ended:
-    """Run a command; kill it, and all that it started, beyond the limits.
+def run_limited(
+    words: Sequence[str],
+    seconds: float,
+    megabytes: float,
+    give_up: Callable[[], bool] = lambda: False,
+) -> Ended:
+    """Run a command; kill it, and all that it started, beyond the limits or when ``give_up`` says
+    so.
 
     Memory is what its process group holds resident; where /proc is missing only time is limited.
     """
@@ -45,7 +51,6 @@ def run_limited(words: Sequence[str], seconds: float, megabytes: float) -> Ended
             stdout=out,
             stderr=err,
             start_new_session=True,
-            preexec_fn=_no_large_files if os.name == "posix" else None,
         )
         stopped = ""
         try:
@@ -54,6 +59,8 @@ def run_limited(words: Sequence[str], seconds: float, megabytes: float) -> Ended
                     stopped = f"it did not end within {seconds:g} s"
                 elif resident(process.pid) > megabytes:
                     stopped = f"it took more than {megabytes:g} MB of memory"
+                elif give_up():
+                    stopped = "it was interrupted"
                 if stopped:
                     break
                 sleep(POLL)
@@ -68,7 +75,10 @@ def run_limited(words: Sequence[str], seconds: float, megabytes: float) -> Ended
         return Ended(None if stopped else code, took, _tail(out), _tail(err), stopped)
 
 
-def _no_large_files() -> None:
+def no_large_files() -> None:
+    """In a child process: no file beyond LARGEST. Its output is a file, too."""
+    if os.name != "posix":
+        return
     import resource
 
     resource.setrlimit(resource.RLIMIT_FSIZE, (LARGEST, LARGEST))

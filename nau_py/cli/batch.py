@@ -17,6 +17,7 @@ def run_batch(
     report: Path | None,
     seconds: float,
     megabytes: float,
+    jobs: int,
     more: list[str],
     quiet: bool,
 ) -> int:
@@ -34,7 +35,12 @@ def run_batch(
     limits = Limits(seconds, megabytes)
     with progress_bar(quiet) as progress:
         found = grade(
-            folder, projects, limits, more, lambda name, done, total: progress("batch", done, total)
+            folder,
+            projects,
+            limits,
+            more,
+            lambda name, done, total: progress("batch", done, total),
+            jobs,
         )
     write_result(report, page(f"Projects of {folder.resolve().name}", found, limits))
     for result in found:

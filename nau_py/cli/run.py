@@ -96,6 +96,7 @@ def run(
     memory_limit: Annotated[
         float, typer.Option(min=1, help="Of --batch: megabytes for a project.")
     ] = 4096.0,
+    jobs: Annotated[int, typer.Option(min=1, help="Of --batch: projects at a time.")] = 1,
     watch: Annotated[
         bool, typer.Option(help="Render again when a file of the project changes.")
     ] = False,
@@ -121,7 +122,13 @@ def run(
         }  # fmt: skip
         more = [w for k, v in words.items() if v is not None for w in (k, str(v))]
         more += ["--no-programs"] * no_programs
-        raise typer.Exit(run_batch(batch, report, time_limit, memory_limit, more, quiet))
+        raise typer.Exit(
+            guarded(
+                lambda: run_batch(batch, report, time_limit, memory_limit, jobs, more, quiet),
+                {},
+                debug,
+            )
+        )
     if project is None:
         sys.stderr.write("Missing argument 'PROJECT'. Try 'nau-run --help'.\n")
         raise typer.Exit(USAGE)

@@ -219,7 +219,7 @@ def test_the_mask_against_tracing_everything() -> None:
     """Inside the mask the same samples; outside it rasterisation is all the error."""
     project = nau_py.load(PROJECTS / "selective" / "project.xml")
     knobs = {"mask": "none, project, all", "spp": "4"}
-    found = run(project, knobs=knobs, reference=64, size=(96, 96))
+    found = run(project, knobs=knobs, reference=32, size=(96, 96), runs=2)
     settings = by(found, "mask")
     told = {c.setting: c for c in found.report.comparisons}
     everything = next(c for label, c in told.items() if "mask all" in label)
@@ -263,7 +263,7 @@ def test_scale_renders_fewer_pixels(folder: Folder) -> None:
     # the pass's target has its own SIZE: the window is what scales, so rays stay
     assert rmse(found[0.5]) >= 0
     project = nau_py.load(PROJECTS / "selective" / "project.xml")
-    scaled = run(project, knobs={"scale": "0.5"}, reference=32, size=(64, 64))
+    scaled = run(project, knobs={"scale": "0.5"}, reference=32, size=(64, 64), runs=2)
     half, whole = (by(scaled, "scale")[k] for k in (0.5, 1.0))
     assert half.pixels < 0.4 * whole.pixels
     assert rmse(half) > rmse(whole)

@@ -15,6 +15,7 @@ import pytest
 from PIL import Image
 
 from tests.conftest import PROJECTS, ROOT, Folder
+from tests.raytrace.studio import colour, program, square, studio
 
 BIN = Path(sys.executable).parent
 SMALL = ["--size", "64x48"]
@@ -280,13 +281,28 @@ def test_explain_says_why_a_pass_is_left_out(folder: Folder) -> None:
     assert "warning[D003]" in done.stderr
 
 
-def test_cost_writes_its_files(tmp_path: Path) -> None:
+def small(folder: Folder) -> None:
+    """A project of two triangles, lit by an area light."""
+    studio(
+        folder,
+        square("floor", "White", [9, 1, 9], [0, -1, 0]),
+        {"White": colour("DIFFUSE", 1.0, 1.0, 1.0, 1.0)},
+        program("White", "direct"),
+        lights=(
+            '<light name="Lamp"><POSITION x="0" y="3" z="0" /><SHAPE value="SPHERE" />'
+            '<RADIUS value="0.5" /></light>'
+        ),
+    )
+
+
+def test_cost_writes_its_files(folder: Folder) -> None:
     """Table on stdout, progress on stderr, four files, exit 0; the page names the project."""
-    out = tmp_path / "out"
-    args = ["--spp", "1,4", "--reference", "32", "--runs", "2", "--out", str(out)]
-    done = run("nau-cost", SELECTIVE, *args, *SMALL, "--no-cache")
+    small(folder)
+    out = folder.path / "out"
+    args = ["--spp", "2,4", "--reference", "32", "--runs", "2", "--out", str(out), "--no-cache"]
+    done = run("nau-cost", str(folder.path / "project.xml"), *args)
     assert done.returncode == 0, done.stderr
-    assert "spp 16 (as it is)" in done.stdout
+    assert "spp 1 (as it is)" in done.stdout
     assert "reference, 32 spp" in done.stderr
     assert sorted(p.name for p in out.iterdir()) == [
         "cost.csv",
@@ -295,8 +311,8 @@ def test_cost_writes_its_files(tmp_path: Path) -> None:
         "cost.png",
     ]
     report = json.loads((out / "cost.json").read_text())
-    assert report["region"] == "mask"
-    assert "<title>Selective" in (out / "cost.html").read_text()
+    assert report["region"] == "picture"
+    assert "<title>Studio" in (out / "cost.html").read_text()
 
 
 @pytest.mark.parametrize(
@@ -319,9 +335,10 @@ def test_cost_says_what_is_wrong(args: list[str], status: int, words: str) -> No
     assert "Traceback" not in done.stderr
 
 
-def test_cost_of_an_unmet_target_fails() -> None:
-    args = ["--spp", "1", "--reference", "20", "--runs", "2", "--target-error", "1e-9", "--quiet"]
-    done = run("nau-cost", SELECTIVE, *args, *SMALL, "--no-cache")
+def test_cost_of_an_unmet_target_fails(folder: Folder) -> None:
+    small(folder)
+    args = ["--spp", "2", "--reference", "20", "--runs", "2", "--target-error", "0", "--quiet"]
+    done = run("nau-cost", str(folder.path / "project.xml"), *args, "--no-cache")
     assert done.returncode == 1
     assert "no setting reaches it" in done.stderr
 

@@ -20,7 +20,16 @@ PANEL = (
 )
 TURN = '<ROTATE x="1" y="0" z="0" w="90" />'
 WHITE = colour("DIFFUSE", 0.8, 0.8, 0.8, 1.0)
-SAMPLES = sorted([*PROJECTS.glob("*/project.xml"), *PROJECTS.glob("course/*/project.xml")])
+QUICK = ("05_alpha", "06_transparency", "07_reflection_refraction", "13_path_tracing")
+"""Lessons of the course in the default run; the others' programs are parts of theirs."""
+SAMPLES = [
+    pytest.param(
+        path,
+        id=path.parent.name,
+        marks=[pytest.mark.slow] * ("course" in path.parts and path.parent.name not in QUICK),
+    )
+    for path in sorted([*PROJECTS.glob("*/project.xml"), *PROJECTS.glob("course/*/project.xml")])
+]
 
 
 def render(project: nau_py.Project, effects: str | None, **options: Any) -> nau_py.Frame:
@@ -47,7 +56,7 @@ def brightest(project: nau_py.Project) -> float:
     return max(found)
 
 
-@pytest.mark.parametrize("path", SAMPLES, ids=lambda p: p.parent.name)
+@pytest.mark.parametrize("path", SAMPLES)
 def test_auto_is_all(path: Path) -> None:
     """To the bit where the report says exact. A chain that ends at a weight of 1e-4 leaves out at
     most that part of the brightest thing, and a sample has at most 64 chains."""
