@@ -39,7 +39,6 @@ class Line:
     y1: float
     colour: str
     width: float = 1.0
-    dash: bool = False
 
 
 @dataclass(frozen=True, slots=True)

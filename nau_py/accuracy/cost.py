@@ -198,7 +198,7 @@ def cost(
             label=truth.label,
             spp=truth.spp,
             cached=truth.cached,
-            own_rmse={r: root(truth.own_mse(r)) for r in judge.regions},
+            own_rmse={r: root(truth.own_mse(r)) for r in truth.regions},
         ),
         settings=[judge.setting(m, m.candidate == start) for m in sweep.found],
         knee=knee.candidate.label if knee is not None else None,

@@ -51,10 +51,6 @@ class Judge:
     truth: Reference
     measured: list[Measured]
 
-    @property
-    def regions(self) -> tuple[str, ...]:
-        return ("picture", "mask") if self.truth.mask is not None else ("picture",)
-
     def better(self, m: Measured) -> bool:
         """Whether it is nearer to the truth than the reference is: the difference of both is then
         less than twice the reference's own error, and says little of the candidate's."""
@@ -118,7 +114,7 @@ class Judge:
             pixels=m.pixels,
             est_error=m.est_error,
             nonfinite=m.nonfinite,
-            errors={region: self._errors(m, region) for region in self.regions},
+            errors={region: self._errors(m, region) for region in self.truth.regions},
             on_front=any(m is other for other in self.front),
             better_than_reference=self.better(m),
         )

@@ -19,7 +19,6 @@ from nau_py.model.pipeline import Pipeline
 from nau_py.passes.frame import RunOptions
 from nau_py.run.renderer import Frame, Renderer
 
-REGIONS = ("picture", "mask")
 STAGES = ("raster", "trace", "shade", "build", "read_back", "other")
 """Stages of a frame; ``set_up`` comes once, before the first."""
 Told = Callable[[float], None]
@@ -41,6 +40,11 @@ class Reference:
     @property
     def shape(self) -> tuple[int, int]:
         return self.mean.shape[0], self.mean.shape[1]
+
+    @property
+    def regions(self) -> tuple[str, ...]:
+        """The regions that errors are measured over."""
+        return ("picture", "mask") if self.mask is not None else ("picture",)
 
     def region(self, name: str) -> Mask:
         """The pixels of ``picture`` or ``mask``."""
@@ -76,7 +80,6 @@ class Measured:
     passes: dict[str, float] = field(default_factory=dict)
     """Milliseconds of each pass that does not trace, last run."""
     machine: dict[str, Any] = field(default_factory=dict)
-    effects: list[dict[str, Any]] = field(default_factory=list)
 
 
 def stage_times(report: dict[str, Any], capture_ms: float) -> dict[str, float]:
@@ -177,7 +180,7 @@ class Bench:
             told(runs + 1, 0.0)
         finally:
             renderer.close()
-        for region in REGIONS:
+        for region in reference.regions:
             where = reference.region(region)
             found.split[region] = bias_and_variance(
                 moments, reference.mean, reference.variance, where
@@ -190,19 +193,18 @@ class Bench:
         report = frame.report
         found.last, found.samples = image.astype(np.float32), frame.samples
         found.nonfinite += int((~np.isfinite(image).all(axis=2)).sum())
-        regions = {name: reference.region(name) for name in REGIONS}
+        regions = {name: reference.region(name) for name in reference.regions}
         for region, errors in measure(image, reference.mean, regions).items():
             found.errors.setdefault(region, []).append(errors)
         found.ms.append(report["frames"][0]["ms"])
         for name, ms in stage_times(report, capture_ms).items():
             found.stages.setdefault(name, []).append(ms)
         found.rays = report["totals"]["rays"]
-        found.effects = report["effects"]
         found.passes = {
             p["name"]: p["ms"]
             for p in report["frames"][0]["passes"]
             if p["status"] == "run" and "stages" not in p
         }
         for item in report["frames"][0]["passes"]:
-            if "est_error" in item:
-                found.est_error, found.pixels = item["est_error"], item["pixels"]
+            if "stages" in item:
+                found.est_error, found.pixels = item.get("est_error"), item["pixels"]

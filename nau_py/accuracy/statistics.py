@@ -16,7 +16,6 @@ _T95 = (
     2.080, 2.074, 2.069, 2.064, 2.060, 2.056, 2.052, 2.048, 2.045, 2.042,
 )  # fmt: skip
 """Two-sided 95 % quantiles of Student's t for 1 to 30 degrees of freedom."""
-NORMAL95 = 1.960
 
 
 def t95(degrees: int) -> float:
@@ -87,8 +86,10 @@ def bias_and_variance(
     """(bias², variance) of one run, means over the chosen pixels; MSE = bias² + variance.
 
     The mean of n runs is off by bias, by variance / n, and by the error of the reference: both are
-    taken off, so that noise does not count as bias. Below zero is zero.
+    taken off, so that noise does not count as bias. Below zero is zero. Pixels that were not finite
+    in some run are left out.
     """
+    where = where & np.isfinite(runs.mean).all(axis=-1) & np.isfinite(reference).all(axis=-1)
     if not where.any():
         return float("nan"), float("nan")
     variance = runs.variance[where]

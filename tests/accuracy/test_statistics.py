@@ -57,6 +57,25 @@ def test_bias_and_variance_are_told_apart() -> None:
     assert variance == pytest.approx(0.04, rel=0.02)
 
 
+def test_pixels_that_are_not_finite_count_nowhere() -> None:
+    """One NaN and one infinity of eight pixels: bias and variance are those of the other six."""
+    runs, fewer = Moments((2, 4, 3)), Moments((1, 6, 3))
+    random = np.random.default_rng(6)
+    with np.errstate(invalid="ignore"):
+        for _ in range(4):
+            picture = random.uniform(0, 1, (2, 4, 3))
+            fewer.add(picture.reshape(-1, 3)[[1, 2, 3, 4, 5, 6]][None])
+            picture[0, 0], picture[1, 3, 1] = np.nan, np.inf
+            runs.add(picture)
+    found, expected = (
+        bias_and_variance(
+            m, np.zeros(m.mean.shape), np.zeros(m.mean.shape), np.ones(m.mean.shape[:2], bool)
+        )
+        for m in (runs, fewer)
+    )
+    assert found == pytest.approx(expected)
+
+
 def test_moments_are_those_of_numpy() -> None:
     random = np.random.default_rng(5)
     pictures = random.uniform(0, 1, (7, 4, 5, 3))
