@@ -11,7 +11,7 @@ from nau_py.diagnostic import error
 from nau_py.errors import ProjectError
 from nau_py.model.accuracy import Accuracy
 from nau_py.model.attributes.texture import COLOR_FORMATS
-from nau_py.model.knob import Value, subject, traced
+from nau_py.model.knob import NothingToTurn, Value, subject, traced
 from nau_py.model.linked import Project
 from nau_py.model.location import Location
 from nau_py.model.passes import Pass
@@ -71,6 +71,8 @@ def ladders(project: Project, pipeline: Pipeline, given: Mapping[str, str]) -> L
             found[name] = subject(project, pipeline.passes, name).ladder(text)
         except LookupError as problem:
             errors.append(error("A001", place, str(problem.args[0])))
+        except NothingToTurn as problem:
+            errors.append(error("A003", place, str(problem)))
         except ValueError as problem:
             errors.append(error("A002", place, f"knob '{name}': {problem}"))
     if errors:

@@ -69,6 +69,8 @@ class CostRun:
     measured: list[Measured]
     chosen: Candidate | None
     """The answer to a target error or a time budget."""
+    diagnostics: list[Diagnostic]
+    """What lint says of the project, no error among it."""
 
     def _repr_png_(self) -> bytes:
         """The front, for notebooks."""
@@ -137,7 +139,8 @@ def cost(
     Raises :class:`~nau_py.errors.ProjectError` for a project with lint errors and for knobs that do
     not exist, and what rendering raises.
     """
-    wrong = [d for d in found_by_lint(project) if d.severity is Severity.ERROR]
+    diagnostics = lint(project, pass_classes(), default_material_names(project))
+    wrong = [d for d in diagnostics if d.severity is Severity.ERROR]
     if wrong:
         raise ProjectError(wrong)
     told = wishes(project)
@@ -209,12 +212,7 @@ def cost(
         effects=effects,
         notes=judge.notes(),
     )
-    return CostRun(report, truth, sweep.found, wanted)
-
-
-def found_by_lint(project: Project) -> list[Diagnostic]:
-    """What lint says of the project."""
-    return lint(project, pass_classes(), default_material_names(project))
+    return CostRun(report, truth, sweep.found, wanted, diagnostics)
 
 
 def _check_reference(project: Project, samples: int, most: int) -> None:

@@ -132,6 +132,9 @@ class Judge:
             variance=variance if isfinite(variance) else None,
         )
 
+    def _error_promise(self, most: float) -> str:
+        return f"{self.measure} of the {self.region} at most {most:g}"
+
     def for_error(self, most: float) -> tuple[Answer, Measured | None]:
         """The cheapest setting whose error is at most ``most``, its interval included."""
         points = [
@@ -139,7 +142,7 @@ class Judge:
             for m in self.measured
         ]
         found = at_error(points, most)
-        question = f"{self.measure} of the {self.region} at most {most:g}"
+        question = self._error_promise(most)
         if found is None:
             least = min(p[1] for p in points)
             text = f"no setting reaches it; the most accurate reaches {least:.3g}"
@@ -153,7 +156,7 @@ class Judge:
             for m in self.measured
         ]
         found = at_time(points, seconds * 1000)
-        question = f"a frame in at most {seconds:g} s"
+        question = _time_promise(seconds)
         if found is None:
             least = min(p[0] for p in points)
             text = f"no setting is so fast; the fastest takes {least / 1000:.3g} s"
@@ -192,12 +195,11 @@ class Judge:
 
     def verify_error(self, m: Measured, most: float) -> Verified:
         found = error_of(m, self.region, self.measure)
-        promise = f"{self.measure} of the {self.region} at most {most:g}"
-        return _verified(promise, m.candidate, found, most)
+        return _verified(self._error_promise(most), m.candidate, found, most)
 
     def verify_time(self, m: Measured, seconds: float) -> Verified:
         found = interval([ms / 1000 for ms in m.ms])
-        return _verified(f"a frame in at most {seconds:g} s", m.candidate, found, seconds)
+        return _verified(_time_promise(seconds), m.candidate, found, seconds)
 
     def notes(self) -> list[str]:
         """What a reader must know to take the numbers right."""
@@ -211,6 +213,10 @@ class Judge:
                     "A larger --reference would tell"
                 )
         return found
+
+
+def _time_promise(seconds: float) -> str:
+    return f"a frame in at most {seconds:g} s"
 
 
 def _verified(promise: str, candidate: Candidate, found: Interval, most: float) -> Verified:

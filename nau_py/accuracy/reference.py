@@ -46,10 +46,13 @@ def content_key(bench: Bench, candidate: Candidate, spp: int, device: str) -> st
         spp,
         BATCHES,
         bench.options.seed,
+        bench.options.effects,
+        bench.options.texture_filter,
     )
     digest.update(repr(said).encode())
     package = Path(nau_py.version.__file__).parent
-    for path in [*sorted(package.rglob("*.py")), *sorted(used_files(bench.project))]:
+    own = (p for p in package.rglob("*") if p.suffix != ".pyc")
+    for path in [*sorted(own), *sorted(used_files(bench.project))]:
         if path.is_file():
             digest.update(path.name.encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()

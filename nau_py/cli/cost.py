@@ -13,6 +13,7 @@ from nau_py.diagnostic import Severity
 
 if TYPE_CHECKING:
     from nau_py.accuracy.cost import CostRun
+    from nau_py.model.linked import Project
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 UNMET = 1
@@ -100,11 +101,10 @@ def run(
     def work() -> int:
         from nau_py.accuracy.document import document
 
-        found_wrong = nau_py.lint(loaded)
         with whole_progress(quiet) as progress:
             made = cost(loaded, options, wishes, pipeline, window, frame, progress)
         if not quiet:
-            say((d for d in found_wrong if d.severity is Severity.WARNING), loaded.sources)
+            say((d for d in made.diagnostics if d.severity is Severity.WARNING), loaded.sources)
             print_cost(made.report)
         if out is not None:
             write_all(out, made)
@@ -120,12 +120,10 @@ def run(
     raise typer.Exit(guarded(work, loaded.sources, debug))
 
 
-def _apply(project: object, made: CostRun) -> None:
+def _apply(project: Project, made: CostRun) -> None:
     from nau_py.accuracy.apply import apply
-    from nau_py.model.linked import Project
     from nau_py.run.choose import choose_pipeline
 
-    assert isinstance(project, Project)
     if made.chosen is None:
         sys.stderr.write("nothing to write: no setting meets what was asked\n")
         return

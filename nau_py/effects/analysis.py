@@ -3,6 +3,7 @@ possible; whether it is in view, a frame tells."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from nau_py.effects.facts import MaterialFacts, PassFacts, ProgramFacts
@@ -97,9 +98,13 @@ def called_for(facts: PassFacts) -> dict[str, list[Cause]]:
     return found
 
 
-def _lit(facts: PassFacts, program: ProgramFacts, add: object, emitting: bool) -> None:
+def _lit(
+    facts: PassFacts,
+    program: ProgramFacts,
+    add: Callable[[str, str, Location], None],
+    emitting: bool,
+) -> None:
     """Shadows and penumbrae of the lights that a lit program looks at."""
-    assert callable(add)
     simple = program.proc in ("lambert", "phong", "blinn_phong")
     shadows = any(t.lower() == "shadow" for t in facts.ray_types) or not simple
     for light in facts.lights[:1] if simple else facts.lights:

@@ -12,8 +12,6 @@ EXACT = "exact"
 """The bound of what changes no bit of the picture."""
 UNKNOWN = "not bounded"
 """That of an effect that is called for and left out at the user's word."""
-
-
 NO_CAUSE = "nothing calls for it"
 
 
@@ -41,7 +39,7 @@ def decide(
     wanted: frozenset[str] | None,
     calls: Mapping[str, list[Cause]],
     negligible: float,
-    said: str = "",
+    said: str,
 ) -> list[Decision]:
     """A decision for each effect: what the scene calls for (``wanted`` None), or exactly those
     that are wanted. ``negligible``: weight at which specular chains end. ``said``: who wants them,
@@ -49,14 +47,10 @@ def decide(
     found = []
     for effect in EFFECTS:
         causes = tuple(calls[effect])
-        if wanted is None:
-            simulated = bool(causes)
-            reason = "" if simulated else NO_CAUSE
-        else:
-            simulated = effect in wanted
-            reason = "" if simulated else f"{said or 'the list of effects'} leaves it out"
-            if not causes and not simulated:
-                reason = NO_CAUSE
+        simulated = bool(causes) if wanted is None else effect in wanted
+        reason = ""
+        if not simulated:
+            reason = f"{said} leaves it out" if causes else NO_CAUSE
         if simulated and negligible > 0 and any(c.chain for c in causes):
             bound = f"chains end at {negligible:g} of the radiance"
         elif simulated or not causes:

@@ -157,6 +157,9 @@ def test_references_are_kept_by_content(
     assert not cached()
     folder.write("lib.mlib", library)
     assert cached()
+    wishes = Wishes({"spp": "2"}, reference=16, runs=2)
+    dark = cost(folder.load(), nau_py.RunOptions(effects="none"), wishes)
+    assert not dark.report.reference.cached
     for file in kept.glob("*.npz"):
         file.write_bytes(b"broken")
     assert not cached()
@@ -394,7 +397,7 @@ def test_a_wrong_project_is_said_first(folder: Folder) -> None:
 def test_wrong_knobs_are_all_said(folder: Folder) -> None:
     with pytest.raises(nau_py.ProjectError) as caught:
         run(penumbra(folder), knobs={"ssp": "1", "depth": "0", "mask": "all"})
-    assert [d.rule for d in caught.value.diagnostics] == ["A001", "A002", "A002"]
+    assert [d.rule for d in caught.value.diagnostics] == ["A001", "A002", "A003"]
     with pytest.raises(nau_py.ProjectError, match="cannot judge 64 spp"):
         run(penumbra(folder), knobs={"spp": "64"}, reference=64)
 

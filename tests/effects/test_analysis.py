@@ -108,6 +108,14 @@ def test_opaque_materials_need_no_any_hit() -> None:
     assert opaque(PassFacts(tuple(cards))) == {0, 3}
 
 
+def test_the_threshold_is_the_engines() -> None:
+    """The analysis may not import the engine; both must mean the same alpha."""
+    from nau_py.effects import analysis
+    from nau_py.raytrace.kernels import visibility
+
+    assert analysis.ALPHA_THRESHOLD == visibility.ALPHA_THRESHOLD
+
+
 def test_kinds_of_a_python_program(tmp_path: Path) -> None:
     """By reading: helpers of the file count, other functions and other calls do not."""
     file = tmp_path / "mine.py"
@@ -138,12 +146,12 @@ def test_a_python_program_calls_for_what_it_sends() -> None:
 
 def test_decisions() -> None:
     calls = called_for(facts("mirror", lights=(SUN,)))
-    auto = {d.effect: d for d in decide(None, calls, 1e-4)}
+    auto = {d.effect: d for d in decide(None, calls, 1e-4, "--effects")}
     assert auto["reflection"].simulated
     assert "0.0001" in auto["reflection"].bound
     assert not auto["refraction"].simulated
     assert (auto["refraction"].reason, auto["refraction"].bound) == ("nothing calls for it", EXACT)
-    everything = decide(wanted("all"), calls, 0.0)
+    everything = decide(wanted("all"), calls, 0.0, "--effects")
     assert all(d.simulated and d.bound == EXACT for d in everything)
     listed = {d.effect: d for d in decide(wanted("shadow"), calls, 1e-4, "--effects")}
     assert listed["shadow"].simulated
