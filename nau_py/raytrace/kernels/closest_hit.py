@@ -129,7 +129,8 @@ def shade(scene: Any, tile: Any, ray_type: int, code: int, path: Any) -> bool:
     d = heading_of(path)
     p, face, bound = surface_point(scene, triangle, u, v)
     if code == EMISSION:
-        add(tile, path, emission_of(material), 1.0)
+        emitted(scene, tile, path, material, face)
+        cover(tile, path)
         return False
     normal = facing(shading_normal(scene, triangle, u, v, face), d)
     if code == MIRROR or code == GLOSSY or code == DIELECTRIC:
