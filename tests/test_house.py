@@ -24,7 +24,7 @@ ARROWS = {
     "effects": {"model"},
     "passes": {"raster", "raytrace", "graph", "scene", "effects", "model"},
     "run": {"passes", "raster", "graph", "scene", "lint", "model"},
-    "accuracy": {"run", "passes", "raster", "scene", "graph", "lint", "model"},
+    "accuracy": {"run", "formats", "passes", "raster", "scene", "graph", "lint", "model"},
     "batch": set(),
     "cli": {
         "accuracy",

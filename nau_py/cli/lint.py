@@ -9,8 +9,9 @@ from typing import Annotated
 
 import typer
 
-from nau_py.cli.common import FAILED
-from nau_py.diagnostic import Diagnostic
+from nau_py.cli.common import FAILED, say
+from nau_py.diagnostic import Diagnostic, error
+from nau_py.model.location import Location
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 _SUFFIXES = (".xml", ".yaml", ".yml", ".mlib")
@@ -52,20 +53,16 @@ def lint(
     format: Annotated[Style, typer.Option(help="Output format.")] = Style.TEXT,
     models: Annotated[bool, typer.Option(help="Load and check the models too.")] = False,
     strict: Annotated[bool, typer.Option(help="Warnings fail too.")] = False,
+    fix: Annotated[bool, typer.Option(help="Apply the safe fixes; report what is left.")] = False,
 ) -> None:
     """Check projects: exit status 1 where one has an error."""
-    from nau_py.api import lint as check
-    from nau_py.formats.load import is_library, load_library, load_project
     from nau_py.lint.report import to_json, to_sarif, to_text, worst
     from nau_py.version import __version__
 
-    found: list[Diagnostic] = []
-    sources: dict[str, str] = {}
-    for path in collect(paths):
-        project = load_library(path) if is_library(path) else load_project(path)
-        found += check(project, models)
-        sources |= project.sources
-    found = list(dict.fromkeys(found))
+    files = collect(paths)
+    found, sources = _check(files, models)
+    if fix and _fix(found):
+        found, sources = _check(files, models)
     if format is Style.JSON:
         sys.stdout.write(to_json(found))
     elif format is Style.SARIF:
@@ -74,6 +71,42 @@ def lint(
         sys.stdout.write(to_text(found, sources))
     if worst(found, strict):
         raise typer.Exit(FAILED)
+
+
+def _check(files: list[Path], models: bool) -> tuple[list[Diagnostic], dict[str, str]]:
+    """All findings, and the texts that they are about."""
+    from nau_py.api import lint as check
+    from nau_py.formats.load import is_library, load_library, load_project
+
+    found: list[Diagnostic] = []
+    sources: dict[str, str] = {}
+    for path in files:
+        project = load_library(path) if is_library(path) else load_project(path)
+        found += check(project, models)
+        sources |= project.sources
+    return list(dict.fromkeys(found)), sources
+
+
+def _fix(found: list[Diagnostic]) -> int:
+    """Apply the safe fixes; returns how many files changed. Says on stderr what was done."""
+    from nau_py.formats.edit import fixed
+    from nau_py.lint.report import shown_path
+
+    safe = [next((f for f in d.fixes if f.safe), None) for d in found]
+    files, made = fixed(f for f in safe if f is not None)
+    written = 0
+    for path, (document, edits) in files.items():
+        try:
+            document.write(path, edits)
+        except OSError as problem:
+            say([error("E002", Location(str(path)), f"cannot be written: {problem.strerror}")], {})
+        else:
+            written += 1
+    for fix in dict.fromkeys(made):
+        where = fix.changes[0].location
+        place = Location(shown_path(where.file), where.line, where.column)
+        sys.stderr.write(f"{place}: fixed: '{fix.changes[0].old}': {fix.title}\n")
+    return written
 
 
 def main() -> None:

@@ -23,7 +23,7 @@ _KEYS: tuple[tuple[str, ...], ...] = (
 )
 
 
-def _spellings(attribute: Attribute) -> list[tuple[str, ...]]:
+def spellings_of(attribute: Attribute) -> list[tuple[str, ...]]:
     """For each component, the XML attributes that may hold it."""
     kind = attribute.type
     if kind is DataType.STRING:
@@ -46,7 +46,7 @@ def _spellings(attribute: Attribute) -> list[tuple[str, ...]]:
 
 def keys_of(attribute: Attribute) -> list[str]:
     """The XML attributes to write a value of ``attribute`` with, one a component."""
-    spellings = _spellings(attribute)
+    spellings = spellings_of(attribute)
     if attribute.keys == "rgba":
         return [keys[1] if len(keys) > 1 else keys[0] for keys in spellings]
     if attribute.keys == "size":
@@ -95,7 +95,7 @@ def parse_setting(
         return None
     parts: list[Scalar] = []
     used = set()
-    for index, keys in enumerate(_spellings(attribute)):
+    for index, keys in enumerate(spellings_of(attribute)):
         key = next((k for k in keys if k in element.attributes), None)
         if key is None:
             if index >= attribute.type.required_components:

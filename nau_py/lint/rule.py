@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from nau_py.diagnostic import Diagnostic, Severity
+from nau_py.diagnostic import Diagnostic, Fix, Severity
 from nau_py.graph.contract import Contracts
 from nau_py.model.linked import Project
 from nau_py.model.location import Location
@@ -27,9 +27,10 @@ class Rule:
         location: Location,
         message: str,
         related: tuple[tuple[Location, str], ...] = (),
+        fixes: tuple[Fix, ...] = (),
     ) -> Diagnostic:
         """A finding of this rule."""
-        return Diagnostic(self.id, self.severity, location, message, related)
+        return Diagnostic(self.id, self.severity, location, message, related, fixes)
 
 
 @dataclass(frozen=True, slots=True)

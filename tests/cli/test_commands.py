@@ -251,6 +251,22 @@ def test_lint_statuses_and_formats(folder: Folder) -> None:
     assert "T001" in {d["rule"] for d in json.loads(done.stdout)}
 
 
+def test_lint_applies_safe_fixes_only(folder: Folder) -> None:
+    before = (
+        '<project name="P" widht="8">\n'
+        '<assets><cameras><camera name="C"><projection FOV="60.0.0"/></camera></cameras></assets>\n'
+        '<pipelines><pipeline name="Q"><pass name="show" class="defualt"/></pipeline></pipelines>\n'
+        "</project>\n"
+    )
+    folder.write("project.xml", before)
+    done = run("nau-lint", "project.xml", "--fix", "--format", "json", cwd=folder.path)
+    assert done.returncode == 1  # guesses are left to the person
+    assert [d["rule"] for d in json.loads(done.stdout)] == ["S002", "P001"]
+    assert done.stderr == "project.xml:2:52: fixed: '60.0.0': Write 60\n"
+    after = (folder.path / "project.xml").read_text()
+    assert after == before.replace("60.0.0", "60")
+
+
 def test_fmt_round_trip_and_check(folder: Folder) -> None:
     done = run("nau-fmt", SELECTIVE, "--to", "yaml")
     assert done.stdout == (PROJECTS / "selective" / "project.yaml").read_text()

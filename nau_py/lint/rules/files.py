@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
-from nau_py.diagnostic import Diagnostic, listing
+from nau_py.diagnostic import Change, Diagnostic, Fix, Part, listing
 from nau_py.lint.rule import ERROR, NOTE, WARNING, Facts, check, rule
 from nau_py.lint.walk import nodes
 from nau_py.model.location import Location
@@ -66,12 +67,27 @@ def _path(text: str, kind: str, where: Location, what: str) -> Iterator[Diagnost
         near = similar(found)
         hint = f" (did you mean {listing(near)}?)" if near else ""
         message = f"{what}: the {kind} file '{text}' does not exist: {found.path}{hint}"
-        yield _SOFT.get(kind, F001).at(where, message)
+        fixes = tuple(
+            Fix(f"Change to '{name}'", (Change(where, Part.VALUE, text, _renamed(text, name)),))
+            for name in near
+        )
+        yield _SOFT.get(kind, F001).at(where, message, fixes=fixes)
         return
     if found.wrong_case:
+        written = Path(os.path.relpath(found.best, Path(where.file).parent)).as_posix()
+        fix = Fix("Write it as it is on disk", (Change(where, Part.VALUE, text, written),), True)
         yield F002.at(
-            where, f"{what}: '{text}' differs in letter case from '{found.best.name}' on disk"
+            where,
+            f"{what}: '{text}' differs in letter case from '{found.best.name}' on disk",
+            fixes=(fix,),
         )
     if "\\" in text:
         slashed = text.replace("\\", "/")
-        yield F003.at(where, f"{what}: '{text}' has backslashes; '{slashed}' works everywhere")
+        fix = Fix("Use slashes", (Change(where, Part.VALUE, text, slashed),), True)
+        message = f"{what}: '{text}' has backslashes; '{slashed}' works everywhere"
+        yield F003.at(where, message, fixes=() if found.wrong_case else (fix,))
+
+
+def _renamed(text: str, name: str) -> str:
+    """The path ``text`` with another last part."""
+    return text[: max(text.rfind("/"), text.rfind("\\")) + 1] + name

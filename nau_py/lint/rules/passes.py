@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nau_py.diagnostic import Diagnostic, listing, nearest
+from nau_py.diagnostic import Diagnostic, guess, listing, nearest
 from nau_py.lint.rule import ERROR, WARNING, Facts, check, rule
 from nau_py.model.linked import Project
 from nau_py.model.mask import MaskPass, PropertySelector
@@ -86,6 +86,7 @@ def classes(facts: Facts) -> Iterator[Diagnostic]:
                     pass_.where("class"),
                     f"pass '{pass_.name}': class '{name}' is unknown; there is "
                     f"{listing(known)}{nearest(name, known)}",
+                    fixes=guess(pass_.where("class"), name, known),
                 )
 
 
@@ -128,6 +129,7 @@ def _mask(project: Project, pass_: MaskPass) -> Iterator[Diagnostic]:
                     node.where("name"),
                     f"mask pass '{pass_.name}': materials have no '{node.name}'; there is "
                     f"{listing(known)}{nearest(node.name, known)}",
+                    fixes=guess(node.where("name"), node.name, known),
                 )
 
 

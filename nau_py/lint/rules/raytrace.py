@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
-from nau_py.diagnostic import Diagnostic, listing, nearest
+from nau_py.diagnostic import Diagnostic, guess, listing, nearest
 from nau_py.graph.dependencies import build
 from nau_py.graph.resource import Resource
 from nau_py.lint.ptx import exports, kind_of
@@ -180,6 +180,7 @@ def completeness(facts: Facts) -> Iterator[Diagnostic]:
                         group.where("name"),
                         f"ray type '{group.name}' of pass '{pass_.name}' is not declared; there is "
                         f"{listing(declared)}{nearest(group.name, declared)}",
+                        fixes=guess(group.where("name"), group.name, declared),
                     )
 
 
@@ -235,6 +236,7 @@ def _exports(
                 program.where("proc"),
                 f"{', '.join([label, *whose])}: '{file}' exports no '{proc}'; it exports "
                 f"{listing(known)}{nearest(proc, known)}",
+                fixes=guess(program.where("proc"), proc, known),
             )
     listed = [
         f"{name} ({'; '.join(used) or f'not used {kind_of(name)}'.rstrip()})"
@@ -258,6 +260,7 @@ def _program(project: Project, program: Program, kind: str, label: str) -> Itera
                 program.where("proc"),
                 f"{label}: there is no built-in {kind} program '{proc}'; there is "
                 f"{listing(fitting)}{nearest(proc, fitting)}",
+                fixes=guess(program.where("proc"), proc, fitting),
             )
         return
     written = resolve(project.folder, file)
@@ -283,6 +286,7 @@ def _program(project: Project, program: Program, kind: str, label: str) -> Itera
             program.where("proc"),
             f"{label}: '{path.name}' defines no function '{proc}'; it defines "
             f"{listing(known)}{nearest(proc, known)}",
+            fixes=guess(program.where("proc"), proc, known),
         )
 
 

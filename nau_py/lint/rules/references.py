@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nau_py.diagnostic import Diagnostic, listing, nearest
+from nau_py.diagnostic import Diagnostic, guess, listing, nearest
 from nau_py.lint.rule import ERROR, NOTE, WARNING, Facts, Rule, check, rule
 from nau_py.lint.walk import nodes
 from nau_py.model.attributes import OBJECT_TYPES
@@ -170,6 +170,7 @@ def _name(names: _Names, kind: str, value: str, where: Location, what: str) -> I
             where,
             f"{what} names the {kind} '{value}', which is undefined; there is "
             f"{listing(known)}{nearest(value, known)}",
+            fixes=guess(where, value, known),
         )
 
 
@@ -209,6 +210,7 @@ def _attribute(
         where,
         f"{what} names the {kind} '{short}' of library '{home}', which is undefined; "
         f"it has {listing(local)}{nearest(short, local)}",
+        fixes=guess(where, short, local),
     )
 
 
@@ -229,6 +231,7 @@ def components(facts: Facts) -> Iterator[Diagnostic]:
                 node.where("component"),
                 f"{node.type} has no component '{node.component}'; it has "
                 f"{listing(known, 40)}{nearest(node.component, known)}",
+                fixes=guess(node.where("component"), node.component, known),
             )
         kind = {"CAMERA": "camera", "LIGHT": "light", "VIEWPORT": "viewport", "SCENE": "scene"}.get(
             node.type
@@ -242,6 +245,7 @@ def components(facts: Facts) -> Iterator[Diagnostic]:
                 node.where("context"),
                 f"context '{context}' is no {kind} of the project; there is "
                 f"{listing(known)}{nearest(str(context), known)}",
+                fixes=guess(node.where("context"), str(context), known),
             )
 
 
@@ -265,6 +269,7 @@ def patterns(facts: Facts) -> Iterator[Diagnostic]:
                         node.where(key),
                         f"'{pattern}' of pass '{pass_.name}' matches no material; there is "
                         f"{listing(own, 30)}{nearest(pattern.rstrip('*'), own)}",
+                        fixes=guess(node.where(key), pattern.rstrip("*"), own),
                     )
 
 

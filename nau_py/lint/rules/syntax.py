@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nau_py.diagnostic import Diagnostic
+from nau_py.diagnostic import Change, Diagnostic, Fix, Part
 from nau_py.lint.rule import ERROR, NOTE, WARNING, Facts, check, rule
 from nau_py.model.problem import Problem, ProblemKind
 
@@ -104,7 +104,11 @@ def _diagnostic(p: Problem) -> Diagnostic:
         wanted = _TYPES.get(p.expected, f"a number ({p.expected})")
         return V001.at(p.location, f"{_place(p)} is '{p.value}'; {wanted} is expected")
     if p.kind is ProblemKind.TRAILING_TEXT:
-        return V002.at(p.location, f"{_place(p)} is '{p.value}' and is read as {p.expected}")
+        fix = Fix(
+            f"Write {p.expected}", (Change(p.location, Part.VALUE, p.value, p.expected),), True
+        )
+        message = f"{_place(p)} is '{p.value}' and is read as {p.expected}"
+        return V002.at(p.location, message, fixes=(fix,))
     if p.kind is ProblemKind.INCOMPLETE:
         return V003.at(p.location, f"<{p.element}> is a {p.detail} and lacks '{p.expected}'")
     return V004.at(p.location, f"<{p.element}> is read-only; a file cannot set it")

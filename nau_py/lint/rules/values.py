@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nau_py.diagnostic import Diagnostic, listing, nearest
+from nau_py.diagnostic import Change, Diagnostic, Fix, Part, guess, listing, near, nearest
 from nau_py.lint.rule import ERROR, WARNING, Facts, check, rule
 from nau_py.lint.walk import nodes
 from nau_py.model.attribute import Attribute
@@ -166,15 +166,23 @@ def unknown_things(facts: Facts) -> Iterator[Diagnostic]:
             strict = node.tag in _STRICT
             known = f"; <{node.tag}> takes {listing(attributes)}{nearest(key, attributes)}"
             message = f"attribute '{key}' (='{value}') of <{node.tag}> is unknown"
+            where = node.where(key)
+            fixes = guess(where, key, attributes, Part.ATTRIBUTE)
             if strict:
-                yield S002.at(node.where(key), message + known)
+                yield S002.at(where, message + known, fixes=fixes)
             else:
-                yield S003.at(node.where(key), message + " and ignored" + known)
+                fixes += _remove(where, key, safe=near(key, attributes) is None)
+                yield S003.at(where, message + " and ignored" + known, fixes=fixes)
         for tag, listed in node.unknown_children.items():
             for child in listed:
                 yield from _unknown_child(facts.project, node, tag, child)
         for wrapper, element in node.partial.items():
             yield from _left_over(facts.project, node, wrapper, element)
+
+
+def _remove(where: Location, key: str, safe: bool) -> tuple[Fix, ...]:
+    """The fix that takes an ignored attribute away: safe where it cannot be a slip of the pen."""
+    return (Fix(f"Remove '{key}'", (Change(where, Part.ATTRIBUTE, key, ""),), safe),)
 
 
 def _unknown_child(project: Project, node: Node, tag: str, child: Element) -> Iterator[Diagnostic]:
@@ -195,7 +203,9 @@ def _unknown_child(project: Project, node: Node, tag: str, child: Element) -> It
     if isinstance(node, BufferGeometry) and tag in (*VERTEX_ATTRIBUTES, "index"):
         return
     known = f"<{node.tag}> takes {listing(tags, 40)}{nearest(written, tags)}"
-    yield S001.at(child.location, f"element <{written}> of <{node.tag}> is unknown; {known}")
+    message = f"element <{written}> of <{node.tag}> is unknown; {known}"
+    fixes = guess(child.location, written, tags, Part.ELEMENT)
+    yield S001.at(child.location, message, fixes=fixes)
 
 
 def _has_setting(node: Node, tag: str, project: Project) -> bool:
@@ -217,11 +227,13 @@ def _left_over(
     name = element.source_tag
     for key, value in element.attributes.items():
         message = f"attribute '{key}' (='{value}') of <{name}> is unknown and ignored"
-        yield S003.at(element.where(key), message)
+        where = element.where(key)
+        yield S003.at(where, message, fixes=_remove(where, key, safe=True))
     for child in element.children:
         known = f"<{name}> takes {listing(inside)}{nearest(child.source_tag, inside)}"
         message = f"element <{child.source_tag}> of <{name}> is unknown; {known}"
-        yield S001.at(child.location, message)
+        fixes = guess(child.location, child.source_tag, inside, Part.ELEMENT)
+        yield S001.at(child.location, message, fixes=fixes)
 
 
 @check
@@ -241,6 +253,7 @@ def attribute_values(facts: Facts) -> Iterator[Diagnostic]:
                     node.where(key),
                     f"attribute '{key}' of <{node.tag}> is '{value}'; it takes "
                     f"{listing(known, 20)}{nearest(str(value), known)}",
+                    fixes=guess(node.where(key), str(value), known),
                 )
             elif isinstance(value, str) and marker.constant:
                 yield from _constant(
@@ -255,6 +268,7 @@ def _constant(project: Project, name: str, what: str, where: Location) -> Iterat
             where,
             f"{what} is '{name}': no number, and no constant of that name; the project defines "
             f"{listing(known)}{nearest(name, known)}",
+            fixes=guess(where, name, known),
         )
 
 
@@ -283,6 +297,7 @@ def _setting(
             where,
             f"{what} is '{setting.parts[0]}'; it takes {listing(known, 40)}"
             f"{nearest(str(setting.parts[0]), known)}",
+            fixes=guess(where, str(setting.parts[0]), known),
         )
     if not attribute.type.is_number:
         return
