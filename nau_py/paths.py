@@ -39,6 +39,11 @@ def _entries(folder: str) -> dict[str, str]:
         return {}
 
 
+def forget_folders() -> None:
+    """Look at folders anew: for processes that live longer than their files."""
+    _entries.cache_clear()
+
+
 def resolve(folder: Path, text: str) -> Resolved:
     """Where ``text``, written in a file of ``folder``, leads."""
     path = Path(os.path.normpath(folder / text.strip().replace("\\", "/")))

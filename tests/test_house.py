@@ -26,9 +26,11 @@ ARROWS = {
     "run": {"passes", "raster", "graph", "scene", "lint", "model"},
     "accuracy": {"run", "formats", "passes", "raster", "scene", "graph", "lint", "model"},
     "batch": set(),
+    "editor": {"api", "formats", "lint", "model", "run", "scene"},
     "cli": {
         "accuracy",
         "batch",
+        "editor",
         "api",
         "formats",
         "lint",

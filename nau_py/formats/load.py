@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TypeVar
 
@@ -31,15 +32,23 @@ _DEFAULT_KEYS = ("value", "x", "y", "z", "w", "r", "g", "b", "a")
 
 
 class Reader:
-    """Reads files into models, collecting problems and the text of each file."""
+    """Reads files into models, collecting problems and the text of each file.
 
-    def __init__(self) -> None:
+    ``texts``: what to read for files in the place of what is on disk, by resolved path: an editor's
+    unsaved state.
+    """
+
+    def __init__(self, texts: Mapping[Path, str] | None = None) -> None:
+        self._texts = texts or {}
         self.registry = Registry()
         self.problems: list[Problem] = []
         self.sources: dict[str, str] = {}
 
     def read_text(self, path: Path) -> str | None:
         """The text of a file (UTF-8, else Latin-1), or None with a problem."""
+        if self._texts and (unsaved := self._texts.get(path.resolve())) is not None:
+            self.sources[str(path)] = unsaved
+            return unsaved
         try:
             raw = path.read_bytes()
         except OSError as error:
@@ -126,14 +135,16 @@ class Reader:
         return Binder(self.registry, self.problems).bind(root, cls) if root is not None else None
 
 
-def load_project(path: Path | str) -> Project:
+def load_project(path: Path | str, texts: Mapping[Path, str] | None = None) -> Project:
     """Read a project file (XML or YAML) with its material libraries.
+
+    ``texts``: texts in the place of files, by resolved path.
 
     Never raises for what a file says: problems are collected in ``Project.problems`` and become
     diagnostics in :mod:`nau_py.lint`.
     """
     path = Path(path)
-    reader = Reader()
+    reader = Reader(texts)
     root = reader.element(path, "project", ProjectFile)
     project = Project(path, ProjectFile(location=Location(str(path), 1, 1)), reader.registry)
     project.problems, project.sources = reader.problems, reader.sources
@@ -159,10 +170,10 @@ def load_project(path: Path | str) -> Project:
     return project
 
 
-def load_library(path: Path | str) -> Project:
+def load_library(path: Path | str, texts: Mapping[Path, str] | None = None) -> Project:
     """Read one material library as a project of its own, for lint and formatting."""
     path = Path(path)
-    reader = Reader()
+    reader = Reader(texts)
     project = Project(path, ProjectFile(location=Location(str(path), 1, 1)), reader.registry)
     project.problems, project.sources = reader.problems, reader.sources
     for file in (BUILTIN_LIBRARY, path):

@@ -5,6 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nau_py.diagnostic import Diagnostic, guess, listing, nearest
+from nau_py.lint.reference import (
+    CONTEXTS,
+    PLAIN_KINDS,
+    known_names,
+    owned_nodes,
+    pass_libraries,
+    qualified_reference,
+)
 from nau_py.lint.rule import ERROR, NOTE, WARNING, Facts, Rule, check, rule
 from nau_py.lint.walk import nodes
 from nau_py.model.attributes import OBJECT_TYPES
@@ -85,47 +93,6 @@ R019 = rule(
     "<renderTarget sameas='toTarget'/>",
 )
 
-_OWN_LIBRARY = ("shader", "state")
-_PLAIN = ("scene", "camera", "light", "viewport", "pipeline", "library")
-_ALWAYS = {
-    "camera": ["__nauDefault"],
-    "light": ["__nauDefault"],
-    "viewport": ["__nauDefault"],
-}
-
-
-def _owners(project: Project) -> Iterator[tuple[Node, str]]:
-    """Every node with the name of the library that it stands in; empty in the project file."""
-    own = {id(n): lib.name or "" for lib in project.libraries[1:] for n in lib.walk()}
-    for node in nodes(project):
-        yield node, own.get(id(node), "")
-
-
-def _light_cameras(project: Project) -> list[str]:
-    return [
-        f"{pipeline.name}#{p.name}-LightCam"
-        for pipeline in project.pipelines
-        for p in pipeline.passes
-        if p.pass_class.startswith("depthmap")
-    ]
-
-
-def _pass_libraries(project: Project) -> list[str]:
-    return [f"{pl.name}#{p.name}" for pl in project.pipelines for p in pl.passes]
-
-
-def _known(project: Project, kind: str) -> list[str]:
-    if kind == "object type":
-        return list(OBJECT_TYPES)
-    if kind == "pass":
-        return [p.name for pl in project.pipelines for p in pl.passes if p.name]
-    known = list(project.names(kind)) + _ALWAYS.get(kind, [])
-    if kind in ("camera", "scene"):  # a camera is also a scene that shows its frustum
-        known += _light_cameras(project)
-    if kind == "library":
-        known += _pass_libraries(project)
-    return known
-
 
 class _Names:
     """Known names by kind, computed once a run."""
@@ -136,7 +103,7 @@ class _Names:
 
     def of(self, kind: str) -> list[str]:
         if kind not in self._found:
-            self._found[kind] = _known(self._project, kind)
+            self._found[kind] = known_names(self._project, kind)
         return self._found[kind]
 
 
@@ -144,7 +111,7 @@ class _Names:
 def references(facts: Facts) -> Iterator[Diagnostic]:
     """Every attribute that names something."""
     names = _Names(facts.project)
-    for node, library in _owners(facts.project):
+    for node, library in owned_nodes(facts.project):
         for name, marker in node.markers().items():
             if isinstance(marker, Attr) and marker.ref:
                 value = getattr(node, name)
@@ -180,19 +147,15 @@ def _attribute(
     key = file_key(name, marker)
     where, what = node.where(key), f"attribute '{key}' of <{node.tag}>"
     kind = marker.ref
-    if kind in _PLAIN or kind in ("pass", "object type"):
+    if kind in PLAIN_KINDS:
         yield from _name(names, kind, value, where, what)
         return
-    if "::" in value and kind not in _OWN_LIBRARY:
-        wanted = value
-    else:
-        given = getattr(node, marker.library) if marker.library else None
-        if given is not None and given not in names.of("library"):
-            return  # the library is what is undefined
-        wanted = f"{given or library or DEFAULT_LIBRARY}::{value}"
-        if kind == "buffer" and wanted not in names.of(kind):
-            wanted = f"{getattr(node, 'fromLibrary', None) or library}::{value}"
-    if kind == "material" and wanted.split("::")[0] in _pass_libraries(facts.project):
+    given = getattr(node, marker.library) if marker.library else None
+    if "::" not in value and given is not None and given not in names.of("library"):
+        return  # the library is what is undefined
+    buffers = names.of("buffer") if kind == "buffer" else ()
+    wanted = qualified_reference(node, marker, library, value, buffers)
+    if kind == "material" and wanted.split("::")[0] in pass_libraries(facts.project):
         return
     known = names.of(kind)
     if wanted in known:
@@ -233,9 +196,7 @@ def components(facts: Facts) -> Iterator[Diagnostic]:
                 f"{listing(known, 40)}{nearest(node.component, known)}",
                 fixes=guess(node.where("component"), node.component, known),
             )
-        kind = {"CAMERA": "camera", "LIGHT": "light", "VIEWPORT": "viewport", "SCENE": "scene"}.get(
-            node.type
-        )
+        kind = CONTEXTS.get(node.type)
         context = node.context
         if not project.file.tag:
             continue  # a library alone: the project that loads it defines cameras and lights
