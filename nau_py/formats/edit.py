@@ -257,17 +257,36 @@ def attribute_edits(document: Document, begin: int, key: str, value: str) -> lis
     end of the start tag (in YAML: as the first key)."""
     text = document.text
     if document.yaml:
-        return [(begin, begin, f"{key}: {value}{_newline(text)}{_pad(text, begin)}")]
+        return _yaml_key(text, begin, key, value)
     new = escape(value, _QUOTES)
     span = _attributes(text, begin).get(key)
     if span is not None:
         first, last = span
         quoted = text[first - 1 : first] in _QUOTES
-        return [(first, last, new if quoted else f'"{new}"')] if text[first:last] != new else []
+        if _same(text[first:last], new):
+            return []
+        return [(first, last, new if quoted else f'"{new}"')]
     end = tag_end(text, begin)
     closing = re.compile(r"\s*/?>$").search(text, begin, end)
     at = closing.start() if closing else end - 1
     return [(at, at, f' {key}="{new}"')]
+
+
+def _yaml_key(text: str, begin: int, key: str, value: str) -> list[Edit]:
+    """Add a key to the map at ``begin``: an item of a list, or what stands behind a key."""
+    line = text.rfind("\n", 0, begin) + 1
+    owner = _YAML_KEY.match(text, begin)
+    if owner is not None and not text[line:begin].endswith("- "):
+        inner = re.compile(r"[ \t]*\{[ \t]*").match(text, owner.end())
+        if inner:
+            rest = "" if text.startswith("}", inner.end()) else ", "
+            return [(inner.end(), inner.end(), f"{key}: {value}{rest}")]
+        block = re.compile(r"[ \t]*(?:#[^\n]*)?(?:\r?\n[ \t]*(?:#[^\n]*)?)*\n([ ]*)(?=\S)")
+        found = block.match(text, owner.end())
+        if found is None or len(found[1]) <= begin - line:
+            return []  # a scalar stands for the map
+        begin = found.end()
+    return [(begin, begin, f"{key}: {value}{_newline(text)}{_pad(text, begin)}")]
 
 
 def value_edits(document: Document, begin: int, value: str) -> list[Edit]:
@@ -276,7 +295,15 @@ def value_edits(document: Document, begin: int, value: str) -> list[Edit]:
     new = value if document.yaml else escape(value, _QUOTES)
     if not document.yaml and document.text[first - 1 : first] not in _QUOTES:
         new = f'"{new}"'
-    return [(first, last, new)] if document.text[first:last] != new else []
+    return [(first, last, new)] if not _same(document.text[first:last], new) else []
+
+
+def _same(one: str, other: str) -> bool:
+    """Whether two texts are the same value: 1.0 is 1."""
+    try:
+        return one == other.strip('"') or float(one) == float(other.strip('"'))
+    except ValueError:
+        return False
 
 
 def setting_edits(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from nau_py.diagnostic import listing, nearest
 from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Setting
 from nau_py.model.passes import Pass
-from nau_py.model.values import DataType
+from nau_py.model.values import DataType, Scalar
 from nau_py.passes.frame import FrameContext
 from nau_py.raster.buffers import basic_types
 from nau_py.scene.material import ImageBinding, RenderMaterial
@@ -53,7 +54,7 @@ class Attributes:
         name: str,
         component: str,
         index: int,
-        values: list[float],
+        values: Sequence[Scalar],
     ) -> None:
         """Write an attribute. Neither read-only flags nor ranges are checked, as in Nau."""
         if type_ not in SETTABLE:
@@ -75,9 +76,9 @@ class Attributes:
         elif type_ == "LIGHT":
             lights = frame.lights(pass_)
             light = lights[index] if name == "CURRENT" else frame.world.light(name)
-            light.values[component] = parts
+            light.set(component, parts)
         elif type_ == "COLOR":
-            self._material(frame, name).colours[component] = parts
+            self._material(frame, name).colours[component] = tuple(float(v) for v in parts)
         else:
             image = self._image(frame, name, index)
             settings = dict(image.settings) | {component: tuple(int(v) for v in values)}
@@ -98,17 +99,17 @@ class Attributes:
         if component not in names:
             raise ValueError(f"{type_} has no attribute '{component}'{nearest(component, names)}")
 
-    def _write(self, node: Configured, name: str, parts: tuple[float, ...]) -> None:
+    def _write(self, node: Configured, name: str, parts: tuple[Scalar, ...]) -> None:
         self._changed.append((node, name, node.settings.get(name)))
         node.settings[name] = Setting(parts)
 
-    def _renderer(self, frame: FrameContext, component: str, values: list[float]) -> None:
+    def _renderer(self, frame: FrameContext, component: str, values: Sequence[Scalar]) -> None:
         if component == "FRAME_COUNT":
             frame.session.first_frame += frame.index - int(values[0])
             frame.index = int(values[0])
         else:
             whole = self.project.registry["RENDERER"].attributes[component].type.is_integer
-            parts = tuple(float(int(v)) if whole else v for v in values)
+            parts = tuple(float(int(v)) if whole else float(v) for v in values)
             frame.world.renderer_values[component] = parts
 
     def _pass(self, running: Pass, name: str) -> Pass:

@@ -50,7 +50,9 @@ def _npy(image: NDArray[Any]) -> bytes:
     return stream.getvalue()
 
 
-def _exr(path: Path, image: NDArray[Any]) -> bytes:
+def exr(path: Path, image: NDArray[Any]) -> bytes:
+    """An EXR file's bytes; ``path`` is for the message. Raises
+    :class:`~nau_py.errors.OutputError` without the extra."""
     try:
         import OpenEXR  # type: ignore[import-not-found,unused-ignore]
     except ImportError:
@@ -87,7 +89,7 @@ def write_image(path: Path, image: NDArray[Any]) -> None:
     check_output(path)
     ending = path.suffix.lower()
     if ending == ".exr":
-        data = _exr(path, image)
+        data = exr(path, image)
     else:
         data = png(image) if ending == ".png" else _npy(image)
     try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
@@ -19,6 +19,7 @@ from nau_py.graph.resource import WINDOW
 from nau_py.lint.engine import lint
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
+from nau_py.model.values import Scalar
 from nau_py.passes import pass_classes
 from nau_py.passes.frame import (
     FrameContext,
@@ -114,6 +115,7 @@ class Renderer:
         self._session: Session | None = None
         self._scripts: Scripts | None = None
         self._next = 0
+        self._overrides: dict[tuple[str, str, str, int], Sequence[Scalar]] = {}
         self._setup_ms = 0.0
         self.capture_ms = 0.0
         """Milliseconds that reading the last frame's targets took."""
@@ -187,20 +189,43 @@ class Renderer:
         )
 
     def _set_parameters(self, session: Session) -> None:
-        if not self._parameters or not self.plan.steps:
-            return
-        width, height = self._size
-        rect = Rect(0.0, 0.0, float(width), float(height))
-        frame = FrameContext(session, 0, 0.0, session.world.camera(None), rect)
-        first = self.plan.steps[0].pass_
-        for parameter, values in self._parameters:
+        """What a session starts with: the parameters, and what :meth:`set_attribute` said."""
+        for parameter, values in self._parameters if self.plan.steps else []:
             node = parameter.node
             where = (node.type or "", node.context or "CURRENT", node.component or "", node.id or 0)
             try:
-                self.scripts.attributes.set(frame, first, *where, values)
+                self._set(session, where, values)
             except ValueError as problem:
                 message = f"parameter '{parameter.name}' cannot be set: {problem}"
                 raise ProjectError(error("R020", node.location, message)) from None
+        for where, override in self._overrides.items():
+            self._set(session, where, override)
+
+    def _set(
+        self, session: Session, where: tuple[str, str, str, int], values: Sequence[Scalar]
+    ) -> None:
+        width, height = self._size
+        rect = Rect(0.0, 0.0, float(width), float(height))
+        frame = FrameContext(session, 0, 0.0, session.world.camera(None), rect)
+        self.scripts.attributes.set(frame, self.plan.steps[0].pass_, *where, values)
+        if where[0] == "COLOR":
+            session.materials.clear()  # those of the passes are copies
+
+    def set_attribute(
+        self, type: str, context: str, component: str, values: Sequence[Scalar], index: int = 0
+    ) -> None:
+        """Set an attribute of the running project from the next frame on, and in every session that
+        follows: ``set_attribute("LIGHT", "Sun", "COLOR", (1, 0.9, 0.8, 1))``.
+
+        ``type``, ``component``: docs/reference.md, attribute sets; ``context``: the object's name,
+        ``lib::name`` of a material, ``pipeline#pass`` of a pass. ``index``: of a light or unit.
+        Raises ValueError where there is no such attribute or object. :meth:`close` puts back what
+        stands in the project itself.
+        """
+        where = (type, context, component, index)
+        if self.plan.steps:
+            self._set(self.session, where, values)
+        self._overrides[where] = tuple(values)
 
     def render(self, frame: int = 0) -> Frame:
         """Render up to and including ``frame`` (from 0) and return it.

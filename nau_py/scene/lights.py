@@ -11,6 +11,8 @@ from nau_py.model.linked import Project
 from nau_py.model.values import Scalar
 
 _NEVER_NEGATIVE = ("CONSTANT_ATT", "LINEAR_ATT", "QUADRATIC_ATT")
+_LAST = {"POSITION": 1.0, "DIRECTION": 0.0}
+"""The fourth component, whatever the file says."""
 
 
 @dataclass(slots=True)
@@ -24,20 +26,26 @@ class LightState:
         """The first three components of an attribute."""
         return np.array([float(v) for v in self.values[name][:3]])
 
+    def set(self, name: str, parts: tuple[Scalar, ...]) -> None:
+        """Set one attribute; what follows from it follows."""
+        if name in _NEVER_NEGATIVE:
+            parts = (max(float(parts[0]), 0.0),)
+        elif name in _LAST:
+            parts = (*parts[:3], _LAST[name])
+        self.values[name] = parts
+        if name == "DIRECTION":
+            direction = self.vector(name)
+            length = float(np.linalg.norm(direction))
+            unit = direction / length if length > 0 else direction
+            self.values["NORMALIZED_DIRECTION"] = (*(float(u) for u in unit), 0.0)
+
 
 def light_state(project: Project, nodes: list[Light], name: str) -> LightState:
     """The state of the light ``name``; nodes of one name are applied in order."""
-    set_ = project.registry["LIGHT"]
-    values: dict[str, tuple[Scalar, ...]] = {a.name: a.default for a in set_ if a.default}
+    state = LightState(name, {a.name: a.default for a in project.registry["LIGHT"] if a.default})
+    for key, parts in list(state.values.items()):
+        state.set(key, parts)
     for node in nodes:
         for key in node.settings:
-            values[key] = project.value(node, "LIGHT", key)
-    for key in _NEVER_NEGATIVE:
-        values[key] = (max(float(values[key][0]), 0.0),)
-    for key, last in (("POSITION", 1.0), ("DIRECTION", 0.0)):
-        values[key] = (*values[key][:3], last)
-    direction = np.array([float(v) for v in values["DIRECTION"][:3]])
-    length = float(np.linalg.norm(direction))
-    unit = direction / length if length > 0 else direction
-    values["NORMALIZED_DIRECTION"] = (*(float(u) for u in unit), 0.0)
-    return LightState(name, values)
+            state.set(key, project.value(node, "LIGHT", key))
+    return state
