@@ -2,7 +2,9 @@
 
 ``python benchmarks/reload.py [SIZE]`` copies the selective demo, follows it as ``nau-run --watch``
 does, and saves a shader, a ray program and the project file, five times each. It prints the medians
-beside a steady frame of the same run, as ratios: above 1 is what taking in the change costs.
+beside a steady frame of the same run, as ratios: above 1 is what taking in the change costs. Then
+the same for a shader in ``nau-view``, with its child process and its look at the files: to the
+first picture, which is coarse, and to the one of full size.
 """
 
 from __future__ import annotations
@@ -12,11 +14,15 @@ import statistics
 import sys
 import tempfile
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, sleep
 
 import nau_py
+from nau_py.passes.frame import RunOptions
 from nau_py.run.renderer import Renderer
 from nau_py.run.watch import Watch
+from nau_py.view.child import Child
+from nau_py.view.desk import Desk
+from nau_py.view.director import Director
 
 ROOT = Path(__file__).parent.parent
 RUNS = 5
@@ -64,7 +70,40 @@ def main() -> None:
                 f"{max(times) * 1000:.0f}), {middle / frame:.2f} x a steady frame"
             )
         watch.close()
+        viewer(root, size, frame)
     print(nau_py.__version__)
+
+
+def viewer(root: Path, size: int, frame: float) -> None:
+    """Save a shader while nau-view shows the demo."""
+    desk = Desk(root / "projects/selective/project.xml", (size, size))
+    director = Director(desk, Child(desk.path, RunOptions()))
+    director.start()
+    while not desk.full:
+        sleep(0.01)
+    file = root / "materials/shaders/combine.frag"
+    firsts, fulls = [], []
+    for run in range(RUNS):
+        sleep(1.0)
+        text, attempt, full = file.read_text(), desk.attempt, desk.full
+        begun = perf_counter()
+        file.write_text(text + f"\n// {run}\n")
+        while desk.attempt == attempt:
+            sleep(0.0005)
+        shown = desk.pictures
+        while desk.pictures == shown:
+            sleep(0.0005)
+        firsts.append(perf_counter() - begun)
+        while desk.full == full:
+            sleep(0.0005)
+        fulls.append(perf_counter() - begun)
+    director.close()
+    for label, times in (("first", firsts), ("full size", fulls)):
+        middle = statistics.median(times)
+        print(
+            f"nau-view, shader, {label}: {middle * 1000:.0f} ms ({min(times) * 1000:.0f} to "
+            f"{max(times) * 1000:.0f}), {middle / frame:.2f} x a steady frame"
+        )
 
 
 if __name__ == "__main__":

@@ -254,7 +254,7 @@ def _yaml_entry(document: Document, begin: int, change: Change) -> list[Edit]:
 
 def attribute_edits(document: Document, begin: int, key: str, value: str) -> list[Edit]:
     """Give attribute ``key`` of the element at ``begin`` a value: exchanged, or added at the
-    end of the start tag (in YAML: as the first key)."""
+    end of the start tag (in YAML: among the first keys)."""
     text = document.text
     if document.yaml:
         return _yaml_key(text, begin, key, value)
@@ -286,6 +286,10 @@ def _yaml_key(text: str, begin: int, key: str, value: str) -> list[Edit]:
         if found is None or len(found[1]) <= begin - line:
             return []  # a scalar stands for the map
         begin = found.end()
+    elif owner is not None and re.compile(r"[ \t]*[^\s#\[{|>]").match(text, owner.end()):
+        end = text.find("\n", begin)  # behind the first entry: the line with the dash stays
+        end = len(text) if end < 0 else end - text[:end].endswith("\r")
+        return [(end, end, f"{_newline(text)}{_pad(text, begin)}{key}: {value}")]
     return [(begin, begin, f"{key}: {value}{_newline(text)}{_pad(text, begin)}")]
 
 
@@ -319,7 +323,24 @@ def setting_edits(
             edits += value_edits(document, span[0], value)
         elif not document.yaml:
             edits += attribute_edits(document, begin, spellings[0], value)
+        elif spans:
+            edits += _yaml_component(document.text, spans, spellings[0], value)
     return edits
+
+
+def _yaml_component(
+    text: str, spans: dict[str, tuple[int, int]], key: str, value: str
+) -> list[Edit]:
+    """Another component behind the last one of a list or a map."""
+    last, (begin, end) = list(spans.items())[-1]
+    end += text[end : end + 1] in ("'", '"')
+    word = value if last.isdigit() else f"{key}: {value}"
+    line = text.rfind("\n", 0, begin) + 1
+    head = text[line:begin]
+    if "[" in head or "{" in head:
+        return [(end, end, f", {word}")]
+    pad = head[: len(head) - len(head.lstrip(" "))]
+    return [(end, end, f"{_newline(text)}{pad}{'- ' if last.isdigit() else ''}{word}")]
 
 
 def _yaml_scalars(document: Document, begin: int) -> dict[str, tuple[int, int]]:

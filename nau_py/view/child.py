@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import multiprocessing
 import threading
+from collections.abc import Callable
 from multiprocessing.connection import Connection
 from pathlib import Path
 from time import monotonic
@@ -18,7 +19,7 @@ from nau_py.passes.frame import RunOptions
 
 LIMIT = 60.0
 """Seconds without an answer or a sign of work until the process counts as hung."""
-_SLICE = 0.05
+_SLICE = 0.02
 _GRACE = 2.0
 _CANCEL, _WORK = "cancel", "work"
 
@@ -72,6 +73,8 @@ class Child:
 
     def __init__(self, path: Path, options: RunOptions, limit: float = LIMIT) -> None:
         self.path, self.options, self.limit = path, options, limit
+        self.stale: Callable[[], bool] = lambda: False
+        """Whether what is being rendered is not wanted any more; looked at while waiting."""
         self._process: Any = None
         self._pipe: Connection | None = None
         self._asking = threading.Lock()
@@ -108,7 +111,11 @@ class Child:
 
     def _answer(self, pipe: Connection) -> Any:
         heard = monotonic()
+        cancelled = False
         while True:
+            if not cancelled and self.stale():
+                self.cancel()
+                cancelled = True
             if pipe.poll(_SLICE):
                 kind, value = pipe.recv()
                 heard = monotonic()

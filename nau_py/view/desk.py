@@ -52,6 +52,7 @@ class Desk:
         self.values: Values = {}
         """What was changed and is not saved."""
         self.undo: list[Values] = []
+        """What each change has replaced, the last one last. Saving leaves it as it is."""
         self.findings: list[Diagnostic] = []
         self.wrong: list[Diagnostic] = []
         """What the renderer found wrong, beside lint."""
@@ -102,6 +103,10 @@ class Desk:
             self._stamps[path] = stamp(path)
         return {str(p): k for p, k in found.items()}
 
+    def stale(self) -> bool:
+        """Whether :meth:`look` would find something."""
+        return any(stamp(p) != known for p, known in list(self._stamps.items()))
+
     def wanted(self) -> Wanted:
         values = tuple(sorted(self.values.items()))
         return Wanted(self.pipeline, self.frame, values, self.effects, self.size)
@@ -140,21 +145,26 @@ class Desk:
 
     def _change(self, values: Values, more: bool = False) -> None:
         """Change values; ``more``: they belong to the change before, one step of undo."""
-        if not more or not self.undo:
-            self.undo.append(dict(self.values))
-            del self.undo[:-MOST_UNDO]
-        self.values = self.values | values
         plain = {c.key: c.value for c in self.controls()}
-        self.values = {k: v for k, v in self.values.items() if plain.get(k) != v}
+        before = {key: self.values.get(key, plain[key]) for key in values}
+        if more and self.undo:
+            self.undo[-1] = before | self.undo[-1]
+        else:
+            self.undo.append(before)
+            del self.undo[:-MOST_UNDO]
+        self._put_values(values, plain)
+
+    def _put_values(self, values: Values, plain: Values) -> None:
+        """Set values; those that the files have are no changes."""
+        self.values = {k: v for k, v in (self.values | values).items() if plain.get(k) != v}
         self.moved = monotonic()
 
     def _do_undo(self, _: dict[str, Any]) -> None:
         if not self.undo:
             raise ValueError("there is nothing to undo")
-        before = self.undo.pop()
         plain = {c.key: c.value for c in self.controls()}
-        self.values = {k: v for k, v in before.items() if plain.get(k) != v}
-        self.moved = monotonic()
+        before = {k: v for k, v in self.undo.pop().items() if k in plain}
+        self._put_values(before, plain)
 
     def _do_move(self, command: dict[str, Any]) -> None:
         """Move the camera: ``how`` is orbit, look, pan, dolly or fly, ``by`` its numbers."""

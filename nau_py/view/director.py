@@ -12,6 +12,7 @@ from typing import Any
 
 from nau_py.diagnostic import Diagnostic
 from nau_py.errors import NauError
+from nau_py.run.used import SHADER
 from nau_py.view.child import Child, Lost, Refused
 from nau_py.view.desk import Desk
 from nau_py.view.studio import Shown, Wanted
@@ -31,6 +32,7 @@ class Director:
 
     def __init__(self, desk: Desk, child: Child) -> None:
         self.desk, self.child = desk, child
+        child.stale = desk.stale
         self._done: _Done | None = None
         self._coarse: _Done | None = None
         self._failed: _Done | None = None
@@ -97,7 +99,8 @@ class Director:
 
     def _take(self, changed: dict[str, str]) -> None:
         """Take in changed files. The last good picture stays where they are wrong."""
-        self.desk.reload()
+        if set(changed.values()) != {SHADER}:  # lint does not look into those
+            self.desk.reload()
         with self.desk.lock:
             self.desk.attempt += 1
             self.desk.wrong = []
@@ -115,11 +118,14 @@ class Director:
                 if self._guarded(lambda: self._show(now, coarse=True), now):
                     self._coarse = now
                 return True
+            if desk.playing:
+                with desk.lock:
+                    desk.frame += 1
+                return True
             if monotonic() - desk.moved < STILL:
                 return False
         elif desk.playing:
-            with desk.lock:
-                desk.frame += 1
+            self._done = None
             return True
         elif shown is None or not shown.more or shown.steps >= MOST_STEPS:
             return False
@@ -139,6 +145,8 @@ class Director:
             if coarse and desk.picture is not None:  # it has no targets of its own
                 found = replace(found, targets=desk.picture.targets)
             desk.picture = found
+            if desk.failed:
+                desk.note = ""
             desk.wrong, desk.failed = found.diagnostics, False
             desk.pictures += 1
             first = not coarse and found.steps == 1

@@ -112,6 +112,8 @@ class Studio:
         self._of: Wanted | None = None
         self._frame: Frame | None = None
         self._pipeline = ""
+        self._window = False
+        """Whether the picture is the window's, no target's."""
         self._other: tuple[NDArray[np.float64], str] | None = None
         """The picture to compare with, and what it is called."""
 
@@ -148,7 +150,8 @@ class Studio:
         frame = self._render(camera, wanted, seed)
         if coarse:
             return self._step(frame, camera.renderer, frame.image, 1, coarse=True)
-        values = picture(frame, camera.renderer.plan.output == WINDOW)
+        self._window = camera.renderer.plan.output == WINDOW
+        values = picture(frame, self._window)
         self._sum = values if self._sum is None else self._sum + values
         self._steps += 1
         self._mean = self._sum / self._steps
@@ -208,12 +211,15 @@ class Studio:
     def _render(self, camera: _Camera, wanted: Wanted, seed: int) -> Frame:
         renderer = camera.renderer
         self._apply(camera, dict(wanted.values))
-        if camera.rendered != wanted.frame:
-            camera.rendered = -1
-            frame = renderer.render(wanted.frame)
-            camera.rendered = wanted.frame
-            return frame
-        return renderer.again(seed)
+        if camera.rendered == wanted.frame:
+            return renderer.again(seed)
+        first = camera.rendered + 1 if camera.rendered < wanted.frame else 0
+        camera.rendered = -1
+        for index in range(first, wanted.frame + 1):
+            self._tell("", index, wanted.frame)  # a sign of work, and a chance to be cancelled
+            frame = renderer.render(index)
+        camera.rendered = wanted.frame
+        return frame
 
     def _apply(self, camera: _Camera, values: Values) -> None:
         """Tell the renderer what has changed; what is no longer changed goes back to the file's."""
@@ -252,7 +258,9 @@ class Studio:
 
     def _named(self, frame: Frame | None) -> dict[str, NDArray[Any]]:
         """What can be looked at: the window, and every target."""
-        return {"window": frame.image} | frame.targets if frame is not None else {}
+        if frame is None:
+            return {}
+        return ({"window": frame.image} if self._window else {}) | frame.targets
 
     def _target(self, name: str) -> NDArray[Any]:
         found = self._named(self._frame)

@@ -377,7 +377,6 @@ def test_apply_in_yaml(folder: Folder) -> None:
     before, after = text.splitlines(), (folder.path / "project.yaml").read_text().splitlines()
     assert [line.strip("- ") for line in after if line not in before] == [
         "LIGHT_SAMPLES: 4",
-        "name: trace",
         "RAYS_PER_PIXEL: 23",
     ]
     passes = {p.name: p for p in choose_pipeline(folder.load("project.yaml"), None).passes}

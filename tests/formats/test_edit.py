@@ -74,9 +74,12 @@ def test_yaml(text: str, at: str, part: Part, old: str, new: str, wanted: str) -
 def test_settings_change_by_component() -> None:
     text = "<l>\n  <P y='2'\tx='1.0' z='3'/> <!-- x -->\n</l>\n"
     made = edited(text, setting_edits(Document(text, False), text.index("<P"), XYZ, "179"))
-    assert made == "<l>\n  <P y='7'\tx='1' z='9'/> <!-- x -->\n</l>\n"
+    assert made == "<l>\n  <P y='7'\tx='1.0' z='9'/> <!-- x -->\n</l>\n"
     for before, after in (
         ("P: [1, 2, 3]  # here\n", "P: [1, 7, 9]  # here\n"),
+        ("P: [1, 2]  # short\n", "P: [1, 7, 9]  # short\n"),
+        ("P:\n  x: 1\n  y: 2\nQ: 2\n", "P:\n  x: 1\n  y: 7\n  z: 9\nQ: 2\n"),
+        ("P:\n  - 1\n  - 2\nQ: 2\n", "P:\n  - 1\n  - 7\n  - 9\nQ: 2\n"),
         ("P: {z: 3, x: 1, y: 2}\n", "P: {z: 9, x: 1, y: 7}\n"),
         ("P:\n  - 1\n  - 2\n  - 3\nQ: 2\n", "P:\n  - 1\n  - 7\n  - 9\nQ: 2\n"),
         ("P:\n  x: 1\n  y: 2\n  z: 3\nQ: 2\n", "P:\n  x: 1\n  y: 7\n  z: 9\nQ: 2\n"),
@@ -97,7 +100,7 @@ def test_what_is_missing_is_added() -> None:
     made = edited(
         text, insert_edits(Document(text, True), text.index("name"), "P", ["x", "y"], "12")
     )
-    assert made == "lights:\n  - P: [1, 2]\n    name: Sun\n    ENABLED: true\n"
+    assert made == "lights:\n  - name: Sun\n    P: [1, 2]\n    ENABLED: true\n"
     text = "<a b='1'  />"
     assert (
         edited(text, attribute_edits(Document(text, False), 0, "c", "2")) == "<a b='1' c=\"2\"  />"

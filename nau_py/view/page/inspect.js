@@ -45,7 +45,7 @@ function build() {
     return tag("label", {}, input, ` ${label}`);
   };
   const targets = tag("select", { id: "targets", "aria-label": "target" });
-  targets.onchange = () => { name = targets.value; targets.blur(); load(); };
+  targets.onchange = () => { name = targets.value; targets.blur(); $("read").textContent = ""; load(); };
   const channels = tag("select", { id: "channel", "aria-label": "channel" },
     ...CHANNELS.map((c) => tag("option", {}, c)));
   channels.onchange = () => { channel = channels.value; load(); };
