@@ -12,7 +12,7 @@ import pytest
 import nau_py
 
 PACKAGE = Path(nau_py.__file__).parent
-LEAVES = {"diagnostic", "errors", "files", "html", "paths", "version"}
+LEAVES = {"diagnostic", "errors", "files", "html", "paths", "plugins", "version"}
 ARROWS = {
     "model": set(),
     "formats": {"model"},

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from nau_py.paths import resolve
+from nau_py.plugins import PREFIX, program_files
 
 _DECORATIONS = ("raygen", "closesthit", "anyhit", "miss", "exception", "intersection")
 
@@ -21,8 +22,10 @@ def strip_decoration(proc: str) -> str:
 def stand_in(folder: Path, file: str) -> Path | None:
     """The Python file behind ``file``: itself, or the sibling ``x.py`` of an ``x.ptx``.
 
-    None where there is neither.
+    ``plugin:NAME`` names the programs of a plug-in. None where there is neither.
     """
+    if file.startswith(PREFIX):
+        return program_files().get(file.removeprefix(PREFIX))
     found = resolve(folder, file)
     suffix = found.path.suffix.lower()
     if suffix != ".py":

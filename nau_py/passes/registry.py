@@ -1,18 +1,18 @@
 """The pass classes that nau_py has, built in and from plug-ins.
 
 A plug-in is an entry point of the group ``nau_py.passes`` whose name is the pass class and whose
-object is a :class:`PassClass`.
+object is a :class:`PassClass` (docs/extending.md).
 """
 
 from __future__ import annotations
 
 from functools import lru_cache
-from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Protocol
 
 from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
+from nau_py.plugins import PASSES, loaded
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord
@@ -59,6 +59,4 @@ def pass_classes() -> dict[str, PassClass]:
         "rt": raytrace,
         "optix": raytrace,
     }
-    for entry in entry_points(group="nau_py.passes"):
-        found.setdefault(entry.name, entry.load())
-    return found
+    return loaded(PASSES) | found

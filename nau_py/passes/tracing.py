@@ -22,6 +22,7 @@ from nau_py.passes.effects import decisions, pass_facts
 from nau_py.passes.frame import FrameContext, Session
 from nau_py.passes.material_shading import MaterialShading
 from nau_py.paths import resolve as resolve_path
+from nau_py.plugins import program_files
 from nau_py.raster.semantics import resolve
 from nau_py.raytrace.accel import Accelerator
 from nau_py.raytrace.faults import face_faults
@@ -240,7 +241,9 @@ def _loader(session: Session, provided: dict[tuple[str, str], Callable[..., Any]
     folders = [project.folder, package]
     folders += [Path(lib.file).parent for lib in project.libraries if lib.file]
     folders += [Path(folder) for folder in options.allow_programs]
-    return ProgramLoader(project.folder, TrustRule(tuple(folders), options.no_programs), provided)
+    files = tuple(program_files().values())
+    trust = TrustRule(tuple(folders), options.no_programs, files)
+    return ProgramLoader(project.folder, trust, provided)
 
 
 def _library_image(project: Project, name: str) -> Path | None:

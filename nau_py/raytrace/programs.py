@@ -99,6 +99,8 @@ class TrustRule:
 
     folders: tuple[Path, ...]
     refuse_all: bool = False
+    files: tuple[Path, ...] = ()
+    """Files that are trusted wherever they lie: those of plug-ins."""
 
     def check(self, path: Path, where: Location, label: str) -> None:
         """Raise :class:`~nau_py.errors.ProgramError` for a file outside the folders."""
@@ -106,7 +108,8 @@ class TrustRule:
             message = f"{label}: '{path}' is not loaded, because --no-programs was given"
             raise ProgramError(error("T012", where, message))
         real = path.resolve()
-        if not any(real.is_relative_to(folder.resolve()) for folder in self.folders):
+        known = real in [file.resolve() for file in self.files]
+        if not known and not any(real.is_relative_to(f.resolve()) for f in self.folders):
             message = (
                 f"{label}: '{path}' lies outside the project's folder; "
                 f"allow it with --allow-programs {real.parent}"

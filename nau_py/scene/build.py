@@ -13,6 +13,7 @@ from nau_py.model.linked import Project
 from nau_py.model.location import Location
 from nau_py.model.scene import BufferGeometry, Geometry, Scene, Terrain
 from nau_py.paths import resolve
+from nau_py.plugins import READERS, loaded
 from nau_py.scene import primitives
 from nau_py.scene.assimp import load_assimp
 from nau_py.scene.mesh import Group, Mesh, SceneObject, merge, pad4, transform_mesh
@@ -152,7 +153,7 @@ class SceneBuilder:
         objects: list[SceneObject] = []
         if folder.exists and folder.best.is_dir():
             for path in sorted(folder.best.iterdir()):
-                if path.suffix.lower() in SUFFIXES:
+                if path.suffix.lower() in (*SUFFIXES, *loaded(READERS)):
                     objects += self._read(path, where, swap)
         return objects
 
@@ -174,8 +175,10 @@ class SceneBuilder:
                 objects, materials = [SceneObject(str(path), load_patch(path))], []
             elif suffix == ".xml":
                 objects, materials = self._ogre(path), []
+            elif suffix in loaded(READERS):
+                objects, materials = loaded(READERS)[suffix](path)
             else:
-                known = ", ".join(SUFFIXES)
+                known = ", ".join([*SUFFIXES, *loaded(READERS)])
                 raise ModelError(f"its format '{suffix}' is not supported (supported: {known})")
         except ModelError as problem:
             line = f":{problem.line}" if problem.line else ""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import socket
+import time
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -308,3 +309,15 @@ def test_frames_run_and_stop(served: Served) -> None:
         window.until(lambda w: sharp(w) and not w.content["playing"])
         window.do(do="frame", index=1)
         window.until(lambda w: sharp(w) and w.glance["frame"] == 1)
+
+
+def test_the_cost_front_is_measured_beside(served: Served) -> None:
+    assert json.loads(served.get("cost")[1]) == {"state": "none", "said": []}
+    assert served.get("cost.html")[0] == 404
+    assert served.get("cost", "POST")[0] == 200
+    end = time.monotonic() + 120
+    while (state := json.loads(served.get("cost")[1]))["state"] == "running":
+        assert time.monotonic() < end, state
+        time.sleep(0.2)
+    assert state["state"] == "done", state
+    assert b"<svg" in served.get("cost.html")[1]

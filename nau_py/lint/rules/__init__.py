@@ -1,4 +1,7 @@
-"""The rules, one family a file."""
+"""The rules, one family a file, and those of plug-ins."""
+
+from nau_py.plugins import RULES as PLUGINS
+from nau_py.plugins import loaded
 
 
 def families() -> None:
@@ -10,9 +13,12 @@ def families() -> None:
         names,
         numerics,
         passes,
+        plugins,
         raytrace,
         references,
         running,
         syntax,
         values,
     )
+
+    loaded(PLUGINS)

@@ -17,6 +17,7 @@ from nau_py.model.pass_classes import RAYTRACE_CLASSES
 from nau_py.model.program_source import stand_in, strip_decoration
 from nau_py.model.raytrace import BUILTIN, Program, RaytracePass
 from nau_py.paths import resolve, similar
+from nau_py.plugins import PREFIX, program_files
 
 T001 = rule(
     "T001",
@@ -266,6 +267,15 @@ def _program(project: Project, program: Program, kind: str, label: str) -> Itera
     written = resolve(project.folder, file)
     path = stand_in(project.folder, file)
     if path is None:
+        if file.startswith(PREFIX):
+            names = [PREFIX + name for name in program_files()]
+            yield T003.at(
+                program.where("file"),
+                f"{label}: there is no plug-in '{file}'; there is {listing(names)}"
+                f"{nearest(file, names)}",
+                fixes=guess(program.where("file"), file, names),
+            )
+            return
         if written.exists and not exports(written.best):  # else one finding lists what it exports
             sibling = written.path.with_suffix(".py").name
             yield T005.at(

@@ -73,6 +73,14 @@ for row in (
         "<pipeline name='P'><pass name='draw'/></pipeline>",
     ),
     (
+        "E005",
+        ERROR,
+        "Plug-in cannot be loaded",
+        "A package that adds a pass class, rules, a reader or ray programs does not import.",
+        "a plug-in of another version of nau_py",
+        "pip install --upgrade, or pip uninstall, that package",
+    ),
+    (
         "E004",
         ERROR,
         "No mask to show",

@@ -1,0 +1,27 @@
+"""A lint rule: names of cameras begin with a capital letter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from nau_py.diagnostic import Change, Diagnostic, Fix, Part
+from nau_py.lint.rule import WARNING, Facts, check, rule
+
+Z001 = rule(
+    "Z001",
+    WARNING,
+    "Camera without a capital letter",
+    "In this house cameras are proper names.",
+    "<camera name='eye'/>",
+    "<camera name='Eye'/>",
+)
+
+
+@check
+def capitals(facts: Facts) -> Iterator[Diagnostic]:
+    for camera in facts.project.assets.cameras:
+        name = camera.name or ""
+        if name[:1].islower():
+            where, better = camera.where("name"), name[:1].upper() + name[1:]
+            fix = Fix(f"Write '{better}'", (Change(where, Part.VALUE, name, better),))
+            yield Z001.at(where, f"camera '{name}' begins with a small letter", fixes=(fix,))

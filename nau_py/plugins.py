@@ -1,0 +1,78 @@
+"""Plug-ins: what other installed packages add, by entry points.
+
+================== ============================ ==========================================
+group              name                         object
+================== ============================ ==========================================
+nau_py.passes      the pass class               a :class:`~nau_py.passes.registry.PassClass`
+nau_py.rules       any                          a module that registers rules
+nau_py.readers     the ending, as in ``.tri``   a function of a path, which returns objects
+                                                and materials (:mod:`nau_py.scene.build`)
+nau_py.programs    the name behind ``plugin:``  a module of ray programs
+================== ============================ ==========================================
+
+A plug-in that cannot be loaded is left out and remembered: lint reports it (rule E005).
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+PASSES, RULES, READERS, PROGRAMS = (
+    "nau_py.passes", "nau_py.rules", "nau_py.readers", "nau_py.programs",
+)  # fmt: skip
+PREFIX = "plugin:"
+"""What a ``file`` begins with that names a plug-in's ray programs."""
+
+
+@lru_cache(maxsize=1)
+def _entries() -> list[EntryPoint]:
+    """Every entry point of nau_py's groups: looking through all packages takes a while."""
+    groups = (PASSES, RULES, READERS, PROGRAMS)
+    everything = entry_points()
+    return [entry for group in groups for entry in everything.select(group=group)]
+
+
+_failures: dict[tuple[str, str], str] = {}
+
+
+@lru_cache(maxsize=8)
+def loaded(group: str) -> dict[str, Any]:
+    """Name to object of the plug-ins of a group, loaded once a process."""
+    found: dict[str, Any] = {}
+    for entry in (e for e in _entries() if e.group == group):
+        try:
+            found[entry.name] = entry.load()
+        except Exception as problem:
+            _failures[group, entry.name] = f"{_said(entry)}: {type(problem).__name__}: {problem}"
+    return found
+
+
+def _said(entry: EntryPoint) -> str:
+    package = f" of package '{entry.dist.name}'" if entry.dist is not None else ""
+    return f"plug-in '{entry.name}' ({entry.value}, group {entry.group}){package} cannot be loaded"
+
+
+def failures() -> list[str]:
+    """What could not be loaded so far, and why."""
+    return list(_failures.values())
+
+
+@lru_cache(maxsize=1)
+def program_files() -> dict[str, Path]:
+    """Name to file of the plug-ins' ray programs. They are found, not loaded."""
+    found: dict[str, Path] = {}
+    for entry in (e for e in _entries() if e.group == PROGRAMS):
+        try:
+            spec = find_spec(entry.module)
+        except (ImportError, ValueError) as problem:
+            _failures[PROGRAMS, entry.name] = f"{_said(entry)}: {problem}"
+            continue
+        if spec is None or spec.origin is None:
+            _failures[PROGRAMS, entry.name] = f"{_said(entry)}: there is no such module"
+        else:
+            found[entry.name] = Path(spec.origin)
+    return found
