@@ -33,12 +33,14 @@ class Refused(Exception):
 
 
 def run(path: str, options: RunOptions, pipe: Connection) -> None:
-    """The child's work: answer ``(name, arguments)`` until the pipe closes."""
+    """The child's work: answer ``(number, name, arguments)`` until the pipe closes."""
     from nau_py.view.studio import Cancelled, Studio
+
+    present = 0
 
     def tell(name: str, done: int, total: int) -> None:
         while pipe.poll():
-            if pipe.recv() == _CANCEL:
+            if pipe.recv() == (_CANCEL, present):
                 raise Cancelled
         pipe.send((_WORK, (name, done, total)))
 
@@ -48,9 +50,9 @@ def run(path: str, options: RunOptions, pipe: Connection) -> None:
             asked = pipe.recv()
         except (EOFError, OSError):
             return
-        if asked == _CANCEL:
+        if asked[0] == _CANCEL:
             continue  # it came after the answer
-        name, arguments = asked
+        present, name, arguments = asked
         try:
             answer: tuple[str, Any] = ("done", getattr(studio, name)(*arguments))
         except Cancelled:
@@ -77,6 +79,9 @@ class Child:
         """Whether what is being rendered is not wanted any more; looked at while waiting."""
         self._process: Any = None
         self._pipe: Connection | None = None
+        self._number = 0
+        self._droppable: int | None = None
+        """The number of the question in work, if it may be cancelled."""
         self._asking = threading.Lock()
         self._writing = threading.Lock()
 
@@ -96,24 +101,29 @@ class Child:
             self._pipe = mine
         return self._pipe
 
-    def ask(self, name: str, *arguments: Any) -> Any:
+    def ask(self, name: str, *arguments: Any, droppable: bool = False) -> Any:
         """What a method of :class:`~nau_py.view.studio.Studio` returns; None where it was
-        cancelled. Raises :class:`~nau_py.errors.NauError`, :class:`Lost`, :class:`Refused`."""
+        cancelled, which only a ``droppable`` question can be. Raises
+        :class:`~nau_py.errors.NauError`, :class:`Lost`, :class:`Refused`."""
         with self._asking:
             pipe = self._start()
+            self._number += 1
             try:
                 with self._writing:
-                    pipe.send((name, arguments))
+                    pipe.send((self._number, name, arguments))
+                self._droppable = self._number if droppable else None
                 return self._answer(pipe)
             except (EOFError, OSError):
                 code = self._ended()
                 raise Lost(f"the renderer's process ended while it worked ({code})") from None
+            finally:
+                self._droppable = None
 
     def _answer(self, pipe: Connection) -> Any:
         heard = monotonic()
         cancelled = False
         while True:
-            if not cancelled and self.stale():
+            if self._droppable is not None and not cancelled and self.stale():
                 self.cancel()
                 cancelled = True
             if pipe.poll(_SLICE):
@@ -144,12 +154,12 @@ class Child:
         return f"signal {-code}" if code is not None and code < 0 else f"exit status {code}"
 
     def cancel(self) -> None:
-        """What is being rendered is not wanted any more."""
-        pipe = self._pipe
-        if pipe is not None:
+        """What is being rendered is not wanted any more. Nothing where that is not droppable."""
+        pipe, number = self._pipe, self._droppable
+        if pipe is not None and number is not None:
             try:
                 with self._writing:
-                    pipe.send(_CANCEL)
+                    pipe.send((_CANCEL, number))
             except OSError:
                 return  # the asking thread finds that out
 

@@ -25,6 +25,7 @@ from nau_py.run.renderer import DEFAULT_TIME_STEP
 from nau_py.run.used import used_files
 from nau_py.run.watch import Stamp, stamp
 from nau_py.view import orbit
+from nau_py.view.camera import aims_from_position, camera_node, camera_with
 from nau_py.view.controls import Control, Values, controls, key_of, model_material
 from nau_py.view.graph import graph_data
 from nau_py.view.save import save_edits
@@ -196,21 +197,16 @@ class Desk:
         return found
 
     def pose(self) -> orbit.Pose:
-        """Where the camera is."""
+        """Where the camera is. Raises :class:`ValueError` where the pipeline names none."""
         name = self.camera()
-
-        def vector(component: str) -> orbit.F64 | None:
-            value = self._value(key_of("CAMERA", name, component))
-            return None if value is None else np.array([float(v) for v in value[:3]])
-
-        position = vector("POSITION")
-        up, look = vector("UP"), vector("LOOK_AT_POINT")
-        assert position is not None  # every camera has controls for position and up
-        assert up is not None
-        view = vector("VIEW") if look is None else look - position
-        assert view is not None
-        distance = float(np.linalg.norm(view)) if look is not None else self._distance
-        return orbit.pose(position, view, up, distance or self.extent() / 2)
+        state = camera_with(self.project, name, self.values)
+        node = camera_node(self.project, name)
+        assert state is not None  # camera() has found it
+        assert node is not None
+        distance = self._distance
+        if "LOOK_AT_POINT" in node.settings:
+            distance = float(np.linalg.norm(state.view))
+        return orbit.pose(state.position, state.view, state.up, distance or self.extent() / 2)
 
     def extent(self) -> float:
         """The length of the scene's diagonal, world units."""
@@ -221,20 +217,17 @@ class Desk:
     def _put(self, pose: orbit.Pose, more: bool) -> None:
         name = self.camera()
         self._distance = pose.distance
-        look = self._value(key_of("CAMERA", name, "LOOK_AT_POINT"))
-        aim = "VIEW" if look is None else "LOOK_AT_POINT"
-        target = pose.view if look is None else pose.pivot
-        position = self._value(key_of("CAMERA", name, "POSITION"))
-        last = float(position[3]) if position and len(position) > 3 else 1.0
-        aimed = self._value(key_of("CAMERA", name, aim))
-        tail = float(aimed[3]) if aimed and len(aimed) > 3 else 0.0
-        self._change(
-            {
-                key_of("CAMERA", name, "POSITION"): (*_rounded(pose.position), last),
-                key_of("CAMERA", name, aim): (*_rounded(target), tail),
-            },
-            more,
-        )
+        node = camera_node(self.project, name)
+        aim, target = "VIEW", pose.view
+        if node is not None and "LOOK_AT_POINT" in node.settings:
+            aim = "LOOK_AT_POINT"
+            target = pose.pivot if aims_from_position(node) else pose.view * pose.distance
+        changed: Values = {}
+        for component, vector in (("POSITION", pose.position), (aim, target)):
+            key = key_of("CAMERA", name, component)
+            before = self._value(key) or ()
+            changed[key] = (*_rounded(vector), *before[3:])
+        self._change(changed, more)
 
     def _do_pipeline(self, command: dict[str, Any]) -> None:
         if self.project.pipeline(command["name"]) is None:

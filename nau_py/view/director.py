@@ -135,7 +135,7 @@ class Director:
 
     def _show(self, now: _Done, coarse: bool) -> bool:
         desk = self.desk
-        found: Shown | None = self.child.ask("render", now[0], coarse)
+        found: Shown | None = self.child.ask("render", now[0], coarse, droppable=True)
         if found is None:
             return False
         if self._facts_of != now[1]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import zipfile
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from math import isfinite, sqrt
 from pathlib import Path
 from typing import Any
@@ -31,6 +31,7 @@ from nau_py.run.output import exr, png
 from nau_py.run.renderer import Frame, Renderer
 from nau_py.run.used import PROGRAM, SHADER
 from nau_py.scene.mesh import bounding_box
+from nau_py.view.camera import camera_with
 from nau_py.view.controls import COLOURS, Values, home, parts_of
 from nau_py.view.images import difference, encoded, shown, thumbnail, tinted
 
@@ -224,13 +225,19 @@ class Studio:
     def _apply(self, camera: _Camera, values: Values) -> None:
         """Tell the renderer what has changed; what is no longer changed goes back to the file's."""
         gone = [key for key in camera.told if key not in values]
-        wanted = {key: camera.before[key] for key in gone} | values
-        for key in sorted(wanted, key=_order):
-            if camera.told.get(key) == wanted[key]:
+        wanted = {key: camera.before.get(key, ()) for key in gone} | values
+        moved = set()
+        for key, value in wanted.items():
+            if camera.told.get(key) == value:
+                continue
+            if key.startswith("CAMERA|"):
+                moved.add(parts_of(key)[1])
                 continue
             if key not in camera.before:
                 camera.before[key] = _present(camera.renderer, key)
-            _set(camera.renderer, key, wanted[key])
+            _set(camera.renderer, key, value)
+        for name in moved:
+            _aim(camera.renderer, name, values)
         camera.told = dict(values)
 
     def facts(self) -> Facts:
@@ -362,11 +369,6 @@ def _is_depth(name: str, values: NDArray[Any]) -> bool:
     return values.shape[2] == 1 and values.dtype.kind == "f" and "depth" in name.lower()
 
 
-def _order(key: str) -> tuple[int, str]:
-    """Positions come before what looks from them."""
-    return (0 if key.endswith("|POSITION") else 1, key)
-
-
 def _set(renderer: Renderer, key: str, value: tuple[Scalar, ...]) -> None:
     type_, context, component = parts_of(key)
     if type_ == "MASK":
@@ -375,6 +377,15 @@ def _set(renderer: Renderer, key: str, value: tuple[Scalar, ...]) -> None:
             setattr(node, component, value[0])
         return
     renderer.set_attribute(type_, context, component, value)
+
+
+def _aim(renderer: Renderer, name: str, values: Values) -> None:
+    """Put a camera where the file would have it with these values."""
+    wanted = camera_with(renderer.project, name, values)
+    state = renderer.session.world.camera(name)
+    if wanted is not None and state.name == name:
+        for field_ in fields(state):
+            setattr(state, field_.name, getattr(wanted, field_.name))
 
 
 def _present(renderer: Renderer, key: str) -> tuple[Scalar, ...]:

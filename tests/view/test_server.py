@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import socket
+import threading
 import time
 import zipfile
 from collections.abc import Iterator
@@ -107,6 +108,23 @@ def test_targets_pixels_exports_and_comparison(served: Served) -> None:
         assert '<camera name="C">' in camera
         assert 'FOV="60"' in camera
         assert "  POSITION: [0, 0, 3]" in camera
+
+
+def test_hovering_disturbs_no_export(served: Served) -> None:
+    """What is asked for is finished, whatever else is asked and changed meanwhile."""
+    with served.window() as window:
+        window.until(sharp)
+        found: list[tuple[int, bytes]] = []
+        export = threading.Thread(
+            target=lambda: found.append(served.get("export/frames.zip?first=0&last=30"))
+        )
+        export.start()
+        for x in range(12):
+            window.do(do="move", how="orbit", by=[0.01, 0.0])
+            assert served.get(f"pixel?name=L::out&x={x}&y=0")[0] == 200
+        export.join(60)
+        with zipfile.ZipFile(io.BytesIO(found[0][1])) as archive:
+            assert len(archive.namelist()) == 31
 
 
 def test_only_its_own_page_is_let_in(served: Served, project: Path) -> None:
