@@ -165,10 +165,9 @@ def _values(grammar: Grammar, cursor: Cursor, place: Place) -> Iterator[Completi
         if inner is not None:
             yield from _first_values(grammar, cursor, inner)
         return
-    if entry is None or entry.attr is None:
-        return
     given = cursor.path[-1].attributes if cursor.path else {}
-    yield from _of_entry(grammar, cursor, entry, entry.attr, given)
+    if entry is not None and entry.attr is not None:
+        yield from _of_entry(grammar, cursor, entry, entry.attr, given)
     yield from _by_siblings(grammar, place, cursor.name, given)
 
 

@@ -22,6 +22,8 @@ _CAMERA = ("POSITION", "VIEW", "LOOK_AT_POINT", "UP", "FOV", "NEAR", "FAR", "APE
 _CAMERA_ALSO = ("FOCUS_DISTANCE", "LEFT", "RIGHT", "BOTTOM", "TOP")
 _TRACE = ("RAYS_PER_PIXEL", "MAX_DEPTH", "SAMPLER", "TARGET_ERROR", "LIGHT_SAMPLES")
 COLOURS = ("DIFFUSE", "SPECULAR", "EMISSION", "AMBIENT", "SHININESS")
+_TYPES = ("RENDERER", "PASS", "CAMERA", "LIGHT", "VIEWPORT", "COLOR")
+"""Object types whose attributes can be changed while a project runs."""
 _RANGE = re.compile(r"\b(min|max|step)\s*=\s*(-?[\d.eE+-]+)")
 
 
@@ -198,7 +200,7 @@ def _selectors(pass_: MaskPass, group: str) -> Iterator[Control]:
             if isinstance(marker, Attr) and isinstance(value, int | float):
                 kind = "whole" if marker.type.is_integer else "number"
                 key = key_of("MASK", f"{pass_.name}#{index}", name)
-                label = f"{node.tag} {name}"
+                label = f"{name} ({node.tag} {index + 1})"
                 yield Control(key, group, label, kind, (value,), doc=marker.doc)
 
 
@@ -206,6 +208,8 @@ def _interface(project: Project) -> Iterator[Control]:
     for parameter in parameters(project):
         node, attribute = parameter.node, parameter.attribute
         type_, context = node.type or "", node.context or "CURRENT"
+        if type_ not in _TYPES or (type_, context) == ("CAMERA", "CURRENT"):
+            continue
         value = _interface_value(project, type_, context, attribute)
         key = key_of(type_, context, attribute.name)
         made = _control(attribute, key, "Interface", value, parameter.name)
@@ -253,7 +257,8 @@ def home(project: Project, key: str) -> Node | None:
         return next((p for p in passes if p.name == name), None)
     if type_ == "MASK":
         return _selector(project, context)
-    return None
+    own = project.assets.attributes  # of the other types, the default of a user attribute
+    return next((a for a in own if (a.type, a.name) == (type_, component)), None)
 
 
 def _selector(project: Project, context: str) -> Node | None:

@@ -16,6 +16,7 @@ from nau_py.formats.settings import keys_of, spellings_of
 from nau_py.model.camera import Camera, Projection
 from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Node, Setting
+from nau_py.model.project import UserAttribute
 from nau_py.model.values import Scalar, format_scalar
 from nau_py.view.controls import Values, home, parts_of
 
@@ -54,6 +55,8 @@ def _edits(
 ) -> list[Edit] | None:
     """None where the file's form has no place for the value."""
     type_, _, component = parts_of(key)
+    if isinstance(node, UserAttribute):
+        return _default_edits(document, node, value)
     if not isinstance(node, Configured):
         begin = document.offset(node.where(component))
         return value_edits(document, begin, write_text(value[0]))
@@ -73,6 +76,22 @@ def _edits(
         place = document.offset(node.projection.location)  # it is applied last, so it wins
         return attribute_edits(document, place, component, texts[0]) or None
     return insert_edits(document, begin, component, keys_of(attribute), texts) or None
+
+
+def _default_edits(
+    document: Document, node: UserAttribute, value: tuple[Scalar, ...]
+) -> list[Edit]:
+    """The default of a user attribute."""
+    given = {**node.attribute_locations}
+    vector = "rgba" if "r" in given else "xyzw"
+    edits: list[Edit] = []
+    for key, part in zip(["value"] if len(value) == 1 else vector, value):
+        if key in given:
+            edits += value_edits(document, document.offset(given[key]), write_text(part))
+        else:
+            begin = document.offset(node.location)
+            edits += attribute_edits(document, begin, key, write_text(part))
+    return edits
 
 
 def _texts(project: Project, written: Setting, value: tuple[Scalar, ...]) -> list[str]:

@@ -51,6 +51,18 @@ def test_the_demo_in_an_editor(demo: Path) -> None:
         assert named == ["PERSPECTIVE", "ORTHO"]
         assert await labels(project, '<camera name="Sun', 'Eye" />') == ["Eye", "SunEye"]
         assert "caster" in await labels(project, '<shader fromMaterial="cas', 'ter"')
+        target = ('<renderTarget name="sha', 'dow" fromLibrary="Hybrid" />')
+        assert {"raster", "shadow", "traced", "mask"} <= set(await labels(project, *target))
+        scene = (
+            '<pass name="raster" class="default">\n        <camera name="Eye" />\n        <scenes>\n          <scene name="Pl',
+            'aza" />\n        </scenes>\n        <lights>',
+        )
+        assert "Plaza" in await labels(project, *scene)
+        kinds = await labels(
+            project, 'proc="pinhole_camera" />\n          <optixProgram type="', "Exc"
+        )
+        assert kinds == ["RayGen", "Exception"]
+        assert "raytrace" in await labels(project, '<pass name="trace" class="ray', "trace")
         assert "Hybrid::color" in await labels(project, 'texture="Hybrid::posi', "tion")
         assert "shade" in await labels(project, 'proc="exce', "ption")
         assert "GradePortao" in await labels(project, '<map toMaterial="Vid', 'ro">')
@@ -71,6 +83,25 @@ def test_the_demo_in_an_editor(demo: Path) -> None:
         assert await editor.open(library) == []
         found = await editor.definition(library, 'ps="shaders/caster.f', "rag")
         assert found == ["caster.frag:1: "]
+        half = '<material name="half">\n      <shader name="ha'
+        names = await editor.labels(library, half, "lf")
+        assert {"lit", "masked", "half", "caster", "combine"} <= set(names)
+        shader = library.parent / "shaders" / "lit.vert"
+        ends = 'component="TS05_PVM_MATRIX" />\n        </values>\n      </shader>\n    </material>\n    <!-- Left'
+        found = await editor.definition(
+            library, 'uniform="sunM', f'atrix" type="CAMERA" context="SunEye" {ends}'
+        )
+        assert found == ["sun.frag:12: sunMatrix"]
+        program = project.parent / "programs" / "hybrid.py"
+        bound = await editor.definition(program, "def sha", "de(hits)")
+        assert {place.split(":")[0] for place in bound} == {
+            "project.xml",
+            "full.xml",
+            "project.yaml",
+        }
+        assert {place.split(": ")[1] for place in bound} == {"shade"}
+        bound = await editor.definition(shader, "uniform mat4 P", "VM")
+        assert {place.split(":")[0] for place in bound} == {"hybrid.mlib"}
 
     async def renaming(editor: Editor) -> None:
         used = await editor.references(library, '<state name="two', 'Sided">')

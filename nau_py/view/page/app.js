@@ -68,6 +68,7 @@ function take(said) {
   state.glance = said.glance;
   if (state.content) state.content.frame = said.glance.frame ?? state.content.frame;
   if (said.content) {
+    if (!state.content && !said.content.sound) show("diagnostics");
     state.content = said.content;
     header(said.content);
     controls(said.content);
