@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -35,6 +36,13 @@ def _parameters(texts: list[str]) -> dict[str, str]:
             raise typer.BadParameter(f"'{text}' sets nothing; write NAME=VALUE")
         found[name.strip()] = value.strip()
     return found
+
+
+class Programs(StrEnum):
+    """What a pass of class ``rt`` runs where both are there."""
+
+    PTX = "ptx"
+    PY = "py"
 
 
 def _effects(text: str | None) -> str | None:
@@ -78,6 +86,13 @@ def run(
     allow_programs: Annotated[
         list[Path] | None, typer.Option(help="Folder to load ray programs from.")
     ] = None,
+    programs: Annotated[
+        Programs | None,
+        typer.Option(help="Of class rt: compiled programs, or the Python files beside them."),
+    ] = None,
+    program_limit: Annotated[
+        float, typer.Option(min=0.1, help="Seconds that a compiled program may take for a pixel.")
+    ] = 60.0,
     no_programs: Annotated[bool, typer.Option(help="Refuse all ray programs of files.")] = False,
     check_numerics: Annotated[
         bool, typer.Option(help="Fail on any value that is not finite.")
@@ -135,10 +150,16 @@ def run(
     window, (first, last) = size_of(size), _frames(frames)
     given = _parameters(set_ or [])
     import nau_py
+    from nau_py.cli import guard
     from nau_py.cli.progress import progress_bar
     from nau_py.passes.frame import RunOptions
 
     loaded = nau_py.load(project)
+    chosen = programs.value if programs else ""
+    if guard.needed(loaded, chosen):  # compiled programs could end this process
+        status, said = guard.run_guarded(sys.argv[1:], loaded, program_limit)
+        say(said, loaded.sources)
+        raise typer.Exit(status)
     options = RunOptions(
         spp,
         seed,
@@ -147,6 +168,7 @@ def run(
         no_programs,
         check_numerics=check_numerics,
         effects=_effects(effects),
+        programs=chosen,
     )
 
     def work() -> int:

@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 from xml.sax.saxutils import escape
 
-from nau_py.graph.plan import Plan
+from nau_py.graph.plan import Plan, Step
 from nau_py.graph.resource import WINDOW, Resource
+from nau_py.model.passes import Pass
+from nau_py.model.raytrace import RaytracePass
 
 
 def _resources(plan: Plan) -> list[Resource]:
@@ -17,8 +19,46 @@ def _resources(plan: Plan) -> list[Resource]:
     return list(found)
 
 
+def _programs(pass_: Pass) -> list[dict[str, str]]:
+    """The programs that a raytrace pass binds."""
+    if not isinstance(pass_, RaytracePass):
+        return []
+    found = []
+    entry = pass_.rtEntryPoint
+    for kind, node in (
+        ("ray generation", entry.rayGen if entry else None),
+        ("exception", entry.exception if entry else None),
+    ):
+        if node is not None:
+            found.append({"kind": kind, "file": node.file or "", "proc": node.proc or ""})
+    for material in pass_.materials:
+        for group in material.rayTypes:
+            found += [
+                {
+                    "kind": (program.type or "").lower().replace("_", " "),
+                    "material": material.to or "default",
+                    "ray": group.name or "",
+                    "file": program.file or "",
+                    "proc": program.proc or "",
+                }
+                for program in group.programs
+            ]
+    return found
+
+
+def _title(step: Step) -> str:
+    """What a pass's box says when one points at it."""
+    lines = [step.reason or "runs"]
+    for program in _programs(step.pass_):
+        whose = ", ".join(program[k] for k in ("material", "ray") if k in program)
+        where = f" ({whose})" if whose else ""
+        lines.append(f"{program['kind']}{where}: {program['proc']} of {program['file']}")
+    return "\n".join(lines)
+
+
 def to_json(plan: Plan) -> str:
-    """``{project, pipeline, passes: [{name, class, status, reason, reads, writes}], edges}``."""
+    """``{project, pipeline, passes: [{name, class, status, reason, reads, writes, programs}],
+    edges}``; ``programs`` of raytrace passes: what is bound to which material and ray type."""
     passes = [
         {
             "name": step.name,
@@ -27,6 +67,7 @@ def to_json(plan: Plan) -> str:
             **({"reason": step.reason} if step.reason else {}),
             "reads": [str(r) for r in step.access.reads],
             "writes": [str(r) for r in step.access.writes],
+            **({"programs": bound} if (bound := _programs(step.pass_)) else {}),
         }
         for step in plan.steps
     ]
@@ -103,7 +144,7 @@ def to_svg(plan: Plan) -> str:
         colour = "#dbeafe" if step.run else "#f1f1f1"
         dash = "" if step.run else ' stroke-dasharray="5 4"'
         box = f'<rect x="{_PITCH}" y="{middle - 18}" width="{_BOX}" height="36" rx="5"'
-        parts.append(f"<g><title>{escape(step.reason or 'runs')}</title>{box}")
+        parts.append(f"<g><title>{escape(_title(step))}</title>{box}")
         parts.append(f'fill="{colour}" stroke="#334"{dash}/>')
         parts.append(_text(_PITCH + 10, middle - 2, step.name, 'font-weight="bold"'))
         label = step.pass_.pass_class + ("" if step.run else " · left out")

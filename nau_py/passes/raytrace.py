@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nau_py.diagnostic import Diagnostic
 from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.model.raytrace import RaytracePass
-from nau_py.passes.access import add_process, texture
+from nau_py.passes.access import add_process, buffer, texture
+from nau_py.passes.ptx import execute_ptx, ptx_faults, runs_ptx
 from nau_py.passes.stages import Stages
 
 if TYPE_CHECKING:
@@ -26,6 +29,13 @@ class RaytraceClass:
         if isinstance(pass_, RaytracePass):
             for source in pass_.rtInput:
                 access.add_read(texture(source.texture, None))
+            for parameter in pass_.rtGlobalParams:
+                name = parameter.context
+                if parameter.component == "ID" and name in project.names("texture"):
+                    access.add_read(texture(name, None))
+                elif parameter.component == "ID" and name in project.names("buffer"):
+                    access.add_read(buffer(name, None))
+                    access.add_write(buffer(name, None))
         add_process(access, pass_)
         owner = project.target_of(pass_)
         if owner is not None and owner[1].colors:
@@ -33,6 +43,12 @@ class RaytraceClass:
             access.add_write(first)
             access.replaces.append(first)
         return access
+
+    def faults(self, project: Project, pass_: Pass) -> Iterable[Diagnostic]:
+        """What of its compiled programs cannot be run. Pure."""
+        if isinstance(pass_, RaytracePass) and runs_ptx(pass_, project.folder):
+            return ptx_faults(project, pass_)
+        return ()
 
     def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
         from nau_py.passes.drawing import pass_value, process, target_and_rect
@@ -49,6 +65,9 @@ class RaytraceClass:
         from nau_py.raytrace.launch import LaunchSettings, Work, run_launch, select
 
         if not isinstance(pass_, RaytracePass) or pass_.rtEntryPoint is None:
+            return
+        if runs_ptx(pass_, frame.project.folder, frame.session.options.programs):
+            execute_ptx(pass_, frame, record)
             return
         frame.camera = frame.world.camera(pass_.camera_name)
         target, rect = target_and_rect(pass_, frame, uses_camera=True)

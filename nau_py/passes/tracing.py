@@ -235,15 +235,19 @@ def tracing_state(pass_: RaytracePass, session: Session) -> TracingState:
     return found
 
 
-def _loader(session: Session, provided: dict[tuple[str, str], Callable[..., Any]]) -> ProgramLoader:
+def trust_rule(session: Session) -> TrustRule:
+    """Where programs of a project may be loaded from."""
     project, options = session.project, session.options
     package = Path(__file__).resolve().parent.parent
     folders = [project.folder, package]
     folders += [Path(lib.file).parent for lib in project.libraries if lib.file]
     folders += [Path(folder) for folder in options.allow_programs]
     files = tuple(program_files().values())
-    trust = TrustRule(tuple(folders), options.no_programs, files)
-    return ProgramLoader(project.folder, trust, provided)
+    return TrustRule(tuple(folders), options.no_programs, files)
+
+
+def _loader(session: Session, provided: dict[tuple[str, str], Callable[..., Any]]) -> ProgramLoader:
+    return ProgramLoader(session.project.folder, trust_rule(session), provided)
 
 
 def _library_image(project: Project, name: str) -> Path | None:

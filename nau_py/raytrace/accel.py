@@ -27,7 +27,7 @@ NO_HIT = -1
 _VERSION_PROPERTY = 0  # RTC_DEVICE_PROPERTY_VERSION of rtcore_device.h
 _TRIANGLES, _INDEX, _VERTEX = 0, 0, 1  # rtcore_geometry.h, rtcore_buffer.h
 _UINT3, _FLOAT3 = 0x5003, 0x9003  # rtcore_common.h
-_ROBUST = 1 << 2  # RTC_SCENE_FLAG_ROBUST
+_ROBUST, _FILTER = 1 << 2, 1 << 3  # RTC_SCENE_FLAG_ROBUST, …_FILTER_FUNCTION_IN_ARGUMENTS
 _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "rtcNewDevice": (c_void_p, [c_char_p]),
     "rtcGetDeviceProperty": (c_ssize_t, [c_void_p, c_int]),
@@ -63,6 +63,11 @@ def _library() -> ctypes.CDLL:
     return library
 
 
+def load_embree() -> None:
+    """Make Embree's symbols known to compiled code."""
+    _library()
+
+
 @lru_cache(maxsize=1)
 def _device() -> int:
     return int(_library().rtcNewDevice(None))
@@ -72,6 +77,34 @@ def embree_version() -> str:
     """The version of the Embree library inside embreex's wheel."""
     number = int(_library().rtcGetDeviceProperty(_device(), _VERSION_PROPERTY))
     return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
+
+
+def build_groups(parts: list[tuple[F32, NDArray[np.uint32]]]) -> tuple[int, object]:
+    """An Embree scene with a geometry for each part, by index: positions float32 (n, 4), triangles
+    uint32 (m, 3), shared, not copied. Returns its handle, and what must be kept as long as it."""
+    rtc, device = _library(), _device()
+    scene = rtc.rtcNewScene(device)
+    rtc.rtcSetSceneFlags(scene, _ROBUST | _FILTER)
+    for positions, triangles in parts:
+        mesh = rtc.rtcNewGeometry(device, _TRIANGLES)
+        place, count = positions.ctypes.data, len(positions)
+        rtc.rtcSetSharedGeometryBuffer(mesh, _VERTEX, 0, _FLOAT3, place, 0, 16, count)
+        place, count = triangles.ctypes.data, len(triangles)
+        rtc.rtcSetSharedGeometryBuffer(mesh, _INDEX, 0, _UINT3, place, 0, 12, count)
+        rtc.rtcCommitGeometry(mesh)
+        rtc.rtcAttachGeometry(scene, mesh)
+        rtc.rtcReleaseGeometry(mesh)
+    rtc.rtcCommitScene(scene)
+    if problem := rtc.rtcGetDeviceError(device):
+        raise MemoryError(f"Embree could not build {len(parts)} groups: error {problem}")
+    kept = _Groups(parts)
+    weakref.finalize(kept, rtc.rtcReleaseScene, scene)
+    return int(scene), kept
+
+
+@dataclass(eq=False)
+class _Groups:
+    parts: list[tuple[F32, NDArray[np.uint32]]]
 
 
 @dataclass(slots=True)

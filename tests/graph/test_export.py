@@ -27,6 +27,30 @@ def test_json_lists_passes_and_edges() -> None:
     }
 
 
+def test_programs_of_a_raytrace_pass_are_told() -> None:
+    data = json.loads(export(make(), "json"))
+    trace = next(p for p in data["passes"] if p["name"] == "trace")
+    file = "programs/hybrid.py"
+    assert trace["programs"][0] == {
+        "kind": "ray generation",
+        "file": file,
+        "proc": "pinhole_camera",
+    }
+    glass = [p for p in trace["programs"] if p.get("material") == "Vidro"]
+    assert {
+        "kind": "closest hit",
+        "ray": "Radiance",
+        "material": "Vidro",
+        "file": file,
+        "proc": "glass",
+    } in glass
+    assert [p["name"] for p in data["passes"] if "programs" in p] == ["trace"]
+    titles = [
+        t.text or "" for t in etree.fromstring(export(make(), "svg").encode()).iter("{*}title")
+    ]
+    assert any("closest hit (Vidro, Radiance): glass of programs/hybrid.py" in t for t in titles)
+
+
 def test_svg_is_well_formed_and_shows_every_pass() -> None:
     root = etree.fromstring(export(make(), "svg").encode())
     texts = [t.text for t in root.iter("{*}text")]

@@ -57,10 +57,28 @@ T005 = rule(
     "T005",
     ERROR,
     "Compiled program without a Python counterpart",
-    "An OptiX `.ptx` runs only where a Python file of the same name stands beside it, with "
-    "functions in the place of what it exports.",
-    "file='x.ptx' alone",
+    "A `.ptx` of class `optix` or `raytrace` runs only where a Python file of the same name stands "
+    "beside it, with functions in the place of what it exports. Class `rt` runs those of OptiX 7.",
+    "class='optix', file='x.ptx' alone",
     "file='x.ptx' with x.py beside it",
+)
+T015 = rule(
+    "T015",
+    ERROR,
+    "Compiled program cannot be run",
+    "The PTX text is broken, or has an instruction or a call that is not supported: the message "
+    "names line, procedure and instruction.",
+    "file='x.ptx', which uses wmma",
+    "nvcc without those, or a Python file x.py beside it",
+)
+T016 = rule(
+    "T016",
+    ERROR,
+    "Compiled program failed",
+    "It ended its process (a wrong address) or did not end: the message names the program and the "
+    "launch index.",
+    "ld.global.f32 %f1, [0];",
+    "an address of the launch parameters or of the record",
 )
 T006 = rule(
     "T006",
@@ -223,6 +241,15 @@ def compiled_programs(facts: Facts) -> Iterator[Diagnostic]:
                 yield from _exports(pass_, file, known, listed)
 
 
+@check
+def compiled_code(facts: Facts) -> Iterator[Diagnostic]:
+    """What of compiled programs cannot be run, by the pass class that runs them."""
+    for _, pass_ in raytrace_passes(facts.project):
+        faults = getattr(facts.contracts.get(pass_.pass_class), "faults", None)
+        if faults is not None:
+            yield from faults(facts.project, pass_)
+
+
 def _exports(
     pass_: RaytracePass, file: str, known: list[str], uses: list[tuple[Program, str, list[str]]]
 ) -> Iterator[Diagnostic]:
@@ -239,6 +266,8 @@ def _exports(
                 f"{listing(known)}{nearest(proc, known)}",
                 fixes=guess(program.where("proc"), proc, known),
             )
+    if pass_.class_ == "rt":
+        return  # it runs them
     listed = [
         f"{name} ({'; '.join(used) or f'not used {kind_of(name)}'.rstrip()})"
         for name, used in roles.items()

@@ -40,6 +40,11 @@ _FOLDER = numba.config.CACHE_DIR or _cache_folder()
 """Empty where nothing can be kept: kernels are then compiled in every process."""
 
 
+def cache_folder() -> str:
+    """Where machine code is kept; empty for nowhere."""
+    return _FOLDER
+
+
 @contextmanager
 def _cached() -> Iterator[bool]:
     """Where machine code is kept; whether there is such a place."""

@@ -1,0 +1,302 @@
+"""PTX text to instructions, with the line of each (PTX ISA, sections 4 and 5)."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+
+SPACES = ("param", "local", "const", "global", "shared", "reg")
+SIZES = {
+    "b8": 1, "u8": 1, "s8": 1, "b16": 2, "u16": 2, "s16": 2, "f16": 2, "b32": 4, "u32": 4, "s32": 4,
+    "f32": 4, "b64": 8, "u64": 8, "s64": 8, "f64": 8, "pred": 1,
+    "texref": 8, "samplerref": 8, "surfref": 8,
+}  # fmt: skip
+"""Bytes of each type (5.2)."""
+_SKIPPED = re.compile(r'"[^"\n]*"|//[^\n]*|/\*.*?(?:\*/|\Z)', re.DOTALL)
+_LABEL = re.compile(r"([A-Za-z$_%][\w$]*)\s*:(?!:)")
+_DIGITS = 8
+"""Of a size or a count: no program has a hundred megabytes of its own."""
+_NAME = r"[A-Za-z$_%][\w$%.]*"
+_DECLARED = re.compile(
+    rf"\.(?P<space>{'|'.join(SPACES)})\s*(?P<attributes>(?:\.align\s+\d+\s*|\.ptr\s*)*)"
+    rf"(?P<vector>\.v[24]\s*)?\.(?P<type>[a-z]\w*)\s+(?P<name>{_NAME})"
+    r"(?:<(?P<count>\d+)>)?(?:\[(?P<length>\d*)\])?\s*(?:=\s*(?P<value>.*))?$",
+    re.DOTALL,
+)
+_HEAD = re.compile(
+    rf"(?P<linkage>(?:\.(?:visible|extern|weak|common)\s+)*)\.(?P<kind>entry|func)\s*"
+    rf"(?P<returns>\([^)]*\))?\s*(?P<name>{_NAME})\s*(?P<takes>\([^)]*\))?",
+    re.DOTALL,
+)
+_IGNORED = re.compile(
+    r"\.(?:version|target|address_size|pragma|loc|file|section|alias|callprototype|calltargets|"
+    r"branchtargets|noreturn|minnctapersm|maxntid|maxnreg|reqntid|maxnctapersm)\b"
+)
+
+
+class PtxError(Exception):
+    """What a text has that cannot be read or compiled; ``line`` counts from 1."""
+
+    def __init__(self, line: int, message: str) -> None:
+        super().__init__(message)
+        self.line = line
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A variable: ``count`` registers of the name with numbers, or an array of ``length``."""
+
+    space: str
+    type: str
+    name: str
+    length: int | None = None
+    count: int | None = None
+    align: int = 0
+    value: str = ""
+    line: int = 0
+
+    @property
+    def size(self) -> int:
+        """Bytes."""
+        return SIZES[self.type] * (1 if self.length is None else max(self.length, 1))
+
+
+@dataclass(frozen=True, slots=True)
+class Instruction:
+    """``@guard opcode operands``. ``guard``: a predicate, ``!`` before it where it must be false;
+    ``label``: the name of a place instead of an instruction."""
+
+    opcode: str
+    operands: tuple[str, ...]
+    line: int
+    guard: str = ""
+    label: str = ""
+
+
+@dataclass(slots=True)
+class Function:
+    """An entry point (``.entry``) or function (``.func``); ``body`` is None where it is only
+    declared."""
+
+    name: str
+    entry: bool
+    visible: bool
+    returns: list[Variable]
+    takes: list[Variable]
+    line: int
+    variables: list[Variable] = field(default_factory=list)
+    body: list[Instruction] | None = None
+
+
+@dataclass(slots=True)
+class Module:
+    """A module: its variables outside of functions, and its functions by name."""
+
+    variables: list[Variable] = field(default_factory=list)
+    functions: dict[str, Function] = field(default_factory=dict)
+
+    @property
+    def flushes(self) -> bool:
+        """Whether its floats treat denormals as zero: nvcc says so everywhere, or nowhere."""
+        bodies = (function.body or [] for function in self.functions.values())
+        return any(".ftz" in instruction.opcode for body in bodies for instruction in body)
+
+
+def _without_comments(text: str) -> str:
+    """Comments as blanks, lines kept; what looks like one inside a string is none."""
+
+    def blank(found: re.Match[str]) -> str:
+        return found[0] if found[0].startswith('"') else re.sub(r"[^\n]", " ", found[0])
+
+    return _SKIPPED.sub(blank, text)
+
+
+class _Reader:
+    def __init__(self, text: str) -> None:
+        self.text = _without_comments(text)
+        self.at = 0
+        self.line = 1
+        self.module = Module()
+
+    def fail(self, message: str) -> PtxError:
+        return PtxError(self.line, message)
+
+    def skip(self) -> str:
+        """Skip blanks; the next character, empty at the end."""
+        while self.at < len(self.text) and self.text[self.at].isspace():
+            self.line += self.text[self.at] == "\n"
+            self.at += 1
+        return self.text[self.at : self.at + 1]
+
+    def take(self, end: int) -> str:
+        """The text up to ``end``, behind which reading goes on."""
+        found = self.text[self.at : end]
+        self.line += found.count("\n")
+        self.at = end
+        return found
+
+    def statement(self) -> str:
+        """Up to the next ``;``, which is skipped."""
+        end = self.text.find(";", self.at)
+        if end < 0:
+            raise self.fail(f"no ';' follows '{self.text[self.at : self.at + 30].strip()}'")
+        found = self.take(end)
+        self.at += 1
+        return found.strip()
+
+    def run(self) -> Module:
+        while self.skip():
+            rest = self.text[self.at : self.at + 400]
+            head = _HEAD.match(self.text, self.at)
+            if head is not None:
+                self.function(head)
+            elif _IGNORED.match(rest):
+                self.directive()
+            elif rest.startswith("."):
+                line = self.line
+                declared = re.sub(r"^(\.(visible|extern|weak|common)\s+)+", "", self.statement())
+                self.module.variables += _variables(declared, line)
+            else:
+                raise self.fail(f"a directive is expected, found '{rest.split()[0][:30]}'")
+        return self.module
+
+    def directive(self) -> None:
+        """A line that says nothing about what a program does."""
+        end = self.text.find("\n", self.at)
+        line = self.text[self.at : len(self.text) if end < 0 else end]
+        if line.startswith(".section"):
+            close = self.text.find("}", self.at)
+            self.take(len(self.text) if close < 0 else close + 1)
+        else:
+            self.take(self.at + len(line))
+
+    def function(self, head: re.Match[str]) -> None:
+        line = self.line
+        self.take(head.end())
+        made = Function(
+            head["name"],
+            head["kind"] == "entry",
+            "visible" in head["linkage"],
+            _parameters(head["returns"], line),
+            _parameters(head["takes"], line),
+            line,
+        )
+        while self.skip() not in ("", "{", ";"):
+            if not self.text.startswith(".", self.at):
+                raise self.fail(f"'{{' or ';' is expected after function '{made.name}'")
+            self.directive()
+        if self.skip() == ";":
+            self.at += 1
+        elif self.skip() == "{":
+            self.body(made)
+        else:
+            raise self.fail(f"function '{made.name}' ends early")
+        known = self.module.functions.get(made.name)
+        if known is None or known.body is None:
+            self.module.functions[made.name] = made
+
+    def body(self, made: Function) -> None:
+        made.body = []
+        depth = 0
+        while True:
+            char = self.skip()
+            if char == "":
+                raise self.fail(f"function '{made.name}' is not closed: no '}}' follows")
+            if char in "{}":
+                depth += 1 if char == "{" else -1
+                self.at += 1
+                if depth == 0:
+                    return
+                continue
+            label = _LABEL.match(self.text, self.at)
+            if label is not None:
+                made.body.append(Instruction("", (), self.line, label=label[1]))
+                self.take(label.end())
+                continue
+            line = self.line
+            if re.compile(r"\.(loc|pragma)\b").match(self.text, self.at):
+                self.directive()
+                continue
+            text = self.statement()
+            if text.startswith("."):
+                if not _IGNORED.match(text):
+                    made.variables += _variables(text, line)
+            elif text:
+                made.body.append(_instruction(text, line))
+
+
+def _parameters(text: str | None, line: int) -> list[Variable]:
+    inside = (text or "").strip().removeprefix("(").removesuffix(")").strip()
+    return [_variable(part.strip(), line) for part in inside.split(",") if part.strip()]
+
+
+def _variables(text: str, line: int) -> list[Variable]:
+    """``.reg .u32 a, b, c`` declares three."""
+    if "=" in text or "," not in text:
+        return [_variable(text, line)]
+    first, *others = [part.strip() for part in text.split(",")]
+    head = first[: len(first) - len(first.split()[-1])]
+    return [_variable(first, line), *(_variable(head + other, line) for other in others)]
+
+
+def _variable(text: str, line: int) -> Variable:
+    found = _DECLARED.match(text)
+    if found is None or found["type"] not in SIZES:
+        raise PtxError(line, f"this is no declaration: '{text[:60]}'")
+    if max(len(found["count"] or ""), len(found["length"] or "")) > _DIGITS:
+        raise PtxError(line, f"a number is too large: '{text[:60]}'")
+    align = re.search(r"\.align\s+(\d+)", found["attributes"] or "")
+    length = found["length"]
+    wide = int((found["vector"] or ".v1").strip()[2:])
+    count = None if length is None and wide == 1 else int(length or 0) * wide if length else wide
+    if length == "" and found["value"]:
+        count = found["value"].count(",") + 1
+    return Variable(
+        found["space"],
+        found["type"],
+        found["name"],
+        count,
+        int(found["count"]) if found["count"] else None,
+        int(align[1]) if align else 0,
+        (found["value"] or "").strip(),
+        line,
+    )
+
+
+_GUARD = re.compile(r"@\s*(!?)\s*([%\w$]+)\s+")
+
+
+def _instruction(text: str, line: int) -> Instruction:
+    guard = ""
+    found = _GUARD.match(text)
+    if found:
+        guard, text = found[1] + found[2], text[found.end() :]
+    opcode, _, rest = text.partition(" ") if " " in text.split("\t")[0] else text.partition("\t")
+    opcode = opcode.strip()
+    if not re.fullmatch(r"[a-z][\w.:]*", opcode):
+        raise PtxError(line, f"this is no instruction: '{text[:60]}'")
+    return Instruction(opcode, tuple(_operands(rest, line)), line, guard)
+
+
+def _operands(text: str, line: int) -> list[str]:
+    """Parts between commas that stand in no bracket."""
+    parts, depth, begin = [], 0, 0
+    for index, char in enumerate(text):
+        if char in "([{":
+            depth += 1
+        elif char in ")]}":
+            depth -= 1
+            if depth < 0:
+                raise PtxError(line, f"'{char}' closes nothing: '{text.strip()[:60]}'")
+        elif char == "," and depth == 0:
+            parts.append(text[begin:index].strip())
+            begin = index + 1
+    if depth:
+        raise PtxError(line, f"a bracket is not closed: '{text.strip()[:60]}'")
+    last = text[begin:].strip()
+    return [*parts, last] if last or parts else []
+
+
+def read_ptx(text: str) -> Module:
+    """The module of a text. Raises :class:`PtxError`."""
+    return _Reader(text).run()

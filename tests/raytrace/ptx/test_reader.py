@@ -1,0 +1,155 @@
+"""PTX text: what is read, where errors are, and that broken texts end in messages."""
+
+from __future__ import annotations
+
+import contextlib
+import random
+from pathlib import Path
+
+import pytest
+
+from nau_py.raytrace.ptx.compile import compile_all, compile_module
+from nau_py.raytrace.ptx.native import Native, NotNative
+from nau_py.raytrace.ptx.reader import PtxError, read_ptx
+from tests.raytrace.ptx.bench import HEAD, source
+
+ROOM = (Path(__file__).parent / "data" / "room.ptx").read_text()
+
+
+def test_a_module() -> None:
+    module = read_ptx(ROOM)
+    assert list(module.functions) == [
+        "__raygen__camera", "__closesthit__diffuse", "__anyhit__first_only", "__miss__blue",
+    ]  # fmt: skip
+    (parameters,) = module.variables
+    assert (parameters.space, parameters.size, parameters.align) == ("const", 96, 8)
+    hit = module.functions["__closesthit__diffuse"]
+    assert (hit.entry, hit.visible) == (True, True)
+    assert hit.body is not None
+    first = hit.body[0]
+    assert (first.opcode, first.operands) == ("call", ("(%r1)", "_optix_get_payload_0", "()"))
+    lines = ROOM.split("\n")
+    assert all(i.opcode in lines[i.line - 1] for i in hit.body if i.opcode)
+    assert module.flushes
+    any_ = module.functions["__anyhit__first_only"].body
+    assert any_ is not None
+    assert [i.label for i in any_ if i.label] == ["KEEP"]
+    assert [i.guard for i in any_ if i.guard] == ["%p1"]
+
+
+def test_declarations_and_initial_values() -> None:
+    text = HEAD + (
+        '.global .align 1 .b8 $str[4] = {72, 105, 10, 0}; // a "comment"\n'
+        ".global .u32 table[2] = {0x10, -1};\n.extern .func (.param .b32 r) vprintf (\n"
+        ".param .b64 a,\n.param .b64 b\n)\n;\n"
+        ".func (.param .b32 out) twice(.param .b32 in)\n{ .reg .b32 a, b;\n"
+        "ld.param.u32 a, [in]; add.u32 b, a, a; st.param.b32 [out], b; ret; }\n"
+    )
+    module = read_ptx(text)
+    assert [v.name for v in module.variables] == ["optixLaunchParams", "$str", "table"]
+    assert module.functions["vprintf"].body is None
+    assert [v.name for v in module.functions["twice"].takes] == ["in"]
+    native = compile_module(module)
+    assert "i8 72, i8 105, i8 10, i8 0" in native
+    assert "i8 16, i8 0, i8 0, i8 0, i8 255" in native
+    Native(native)
+
+
+@pytest.mark.parametrize(
+    "broken, line, words",
+    [
+        (HEAD + ".visible .entry f()\n{\n\tret\n}\n", 7, "no ';' follows"),
+        (HEAD + ".visible .entry f()\n{\n\tret;\n", 8, "function 'f' is not closed"),
+        (HEAD + "hello;\n", 5, "a directive is expected, found 'hello;'"),
+        (HEAD + ".global .b9 x;\n", 5, "this is no declaration"),
+        (HEAD + ".visible .entry f()\n{\n\tmov.u32 %r1, {1;\n}\n", 7, "a bracket is not closed"),
+    ],
+)
+def test_what_cannot_be_read(broken: str, line: int, words: str) -> None:
+    with pytest.raises(PtxError, match=words) as found:
+        read_ptx(broken)
+    assert found.value.line == line
+
+
+@pytest.mark.parametrize(
+    "body, words",
+    [
+        ("wmma.load %d, %a0;", "instruction 'wmma.load' is not supported"),
+        ("add.rz.f32 %f1, %f2, %f3;", "rounding '.rz' of arithmetic is not supported"),
+        (
+            "call (%i1), _optix_get_ias_traversable, ();",
+            "'_optix_get_ias_traversable' is not supported",
+        ),
+        ("call other, ();", "there is no procedure 'other'"),
+        ("bra NOWHERE;", "there is no label 'NOWHERE'"),
+        ("add.u32 %d, %a0, %zz;", "'%zz' is not declared"),
+        ("add.u32 %d, %a0;", "'add.u32' has too few operands"),
+        ("add %d, %a0, %a0;", "the instruction names no type"),
+    ],
+)
+def test_what_is_not_supported_is_named(body: str, words: str) -> None:
+    text = source(body, ["u32"], "u32")
+    _, errors = compile_all(read_ptx(text))
+    assert len(errors) == 1
+    assert str(errors[0]) == f"procedure 'run': {words}"[: len(str(errors[0]))] or words in str(
+        errors[0]
+    )
+    assert body.split()[0] in text.split("\n")[errors[0].line - 1]
+
+
+def mutated(text: str, chance: random.Random) -> str:
+    """A text with something cut, doubled, exchanged or thrown in."""
+    at, to = sorted(chance.randrange(len(text)) for _ in range(2))
+    to = min(to, at + chance.randrange(1, 60))
+    kind = chance.randrange(5)
+    if kind == 0:
+        return text[:at]
+    if kind == 1:
+        return text[:at] + text[to:]
+    if kind == 2:
+        return text[:to] + text[at:]
+    if kind == 3:
+        return text[:at] + chance.choice("{}[]();,.%@!:$\"'/*\0\n09fx-+|") + text[at + 1 :]
+    words = text.split()
+    return text[:at] + " " + chance.choice(words) + " " + text[to:]
+
+
+def survives(text: str, chance: random.Random, native: bool) -> None:
+    """Broken text ends in a message, or is compiled; never in anything else."""
+    said: list[PtxError] = []
+    made = ""
+    try:
+        made, said = compile_all(read_ptx(mutated(text, chance)))
+    except PtxError as problem:
+        said = [problem]
+    assert all(problem.line >= 1 and str(problem) for problem in said)
+    if native and made and not said:
+        with contextlib.suppress(NotNative):
+            Native(made)
+
+
+def test_broken_texts_end_in_messages() -> None:
+    chance = random.Random(7)
+    for number in range(1000):
+        survives(ROOM, chance, native=number % 15 == 0)
+
+
+@pytest.mark.slow
+def test_a_hundred_thousand_broken_texts() -> None:
+    chance = random.Random(11)
+    for number in range(100_000):
+        survives(ROOM, chance, native=number % 100 == 0)
+
+
+def test_machine_code_is_kept_and_checked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The second time it comes from the file; one that is not whole is not taken."""
+    monkeypatch.setattr("nau_py.raytrace.ptx.native.cache_folder", lambda: str(tmp_path))
+    text = compile_module(read_ptx(ROOM))
+    assert Native(text).address("__miss__blue")
+    (kept,) = tmp_path.iterdir()
+    whole = kept.read_bytes()
+    assert Native(text).address("__miss__blue")
+    assert kept.read_bytes() == whole
+    kept.write_bytes(whole[:-7])
+    assert Native(text).address("__raygen__camera")
+    assert kept.read_bytes() == whole
