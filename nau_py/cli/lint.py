@@ -94,19 +94,21 @@ def _fix(found: list[Diagnostic]) -> int:
 
     safe = [next((f for f in d.fixes if f.safe), None) for d in found]
     files, made = fixed(f for f in safe if f is not None)
-    written = 0
+    written: set[str] = set()
     for path, (document, edits) in files.items():
         try:
             document.write(path, edits)
         except OSError as problem:
             say([error("E002", Location(str(path)), f"cannot be written: {problem.strerror}")], {})
         else:
-            written += 1
+            written.add(str(path))
     for fix in dict.fromkeys(made):
         where = fix.changes[0].location
+        if str(Path(where.file)) not in written:
+            continue
         place = Location(shown_path(where.file), where.line, where.column)
         sys.stderr.write(f"{place}: fixed: '{fix.changes[0].old}': {fix.title}\n")
-    return written
+    return len(written)
 
 
 def main() -> None:

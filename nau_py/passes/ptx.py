@@ -54,22 +54,21 @@ def runs_ptx(pass_: RaytracePass, folder: Path, programs: str = "") -> bool:
     return found.exists
 
 
-def used_programs(pass_: RaytracePass) -> Iterator[tuple[Program, str]]:
-    """Every program that a pass can run, with what it is for."""
+def used_programs(pass_: RaytracePass) -> Iterator[Program]:
+    """Every program that a pass can run."""
     entry = pass_.rtEntryPoint
     if entry is not None and entry.rayGen is not None:
-        yield entry.rayGen, "ray generation"
+        yield entry.rayGen
     for material in pass_.materials:
         for group in material.rayTypes:
-            for program in group.programs:
-                yield program, f"{program.type} of ray type '{group.name}'"
+            yield from group.programs
 
 
 def ptx_faults(project: Project, pass_: RaytracePass) -> Iterator[Diagnostic]:
     """What of a pass's compiled programs cannot be run: by reading them only."""
     label = f"pass '{pass_.name}'"
     seen: set[Path] = set()
-    for program, _ in used_programs(pass_):
+    for program in used_programs(pass_):
         path = resolve_path(project.folder, program.file or "").best
         if path in seen or path.suffix.lower() != ENDING or not path.exists():
             continue
@@ -314,7 +313,10 @@ class PtxState:
         attribute = set_.get(component) if set_ is not None else None
         value = resolve(context, type_, name, component, node.id or 0)
         if attribute is None or value is None:
-            return b""
+            count = attribute.type.components if attribute is not None else 1
+            said = f"parameter '{node.name}' of pass: {type_} '{name}' has no {component}; it is 0"
+            self.session.resources.diagnostics.append(warning("L007", node.location, said))
+            return bytes(4 * count)
         whole = attribute.type.is_integer or attribute.type.is_boolean
         return np.asarray(value).astype(np.int32 if whole else np.float32).tobytes()
 

@@ -235,6 +235,8 @@ def _variables(text: str, line: int) -> list[Variable]:
     if "=" in text or "," not in text:
         return [_variable(text, line)]
     first, *others = [part.strip() for part in text.split(",")]
+    if not first:
+        raise PtxError(line, f"this is no declaration: '{text[:60]}'")
     head = first[: len(first) - len(first.split()[-1])]
     return [_variable(first, line), *(_variable(head + other, line) for other in others)]
 
