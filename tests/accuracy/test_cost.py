@@ -218,6 +218,7 @@ def test_a_budget_is_kept_and_verified(folder: Folder) -> None:
     assert promise.found.mean < 2 * budget
 
 
+@pytest.mark.slow  # compares measured times: for a machine that does nothing else
 def test_the_mask_against_tracing_everything() -> None:
     """Inside the mask the same samples; outside it rasterisation is all the error."""
     project = nau_py.load(PROJECTS / "selective" / "project.xml")
