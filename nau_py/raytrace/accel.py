@@ -79,32 +79,41 @@ def embree_version() -> str:
     return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
 
 
-def build_groups(parts: list[tuple[F32, NDArray[np.uint32]]]) -> tuple[int, object]:
-    """An Embree scene with a geometry for each part, by index: positions float32 (n, 4), triangles
-    uint32 (m, 3), shared, not copied. Returns its handle, and what must be kept as long as it."""
+Parts = list[tuple[F32, NDArray[np.uint32]]]
+
+
+@dataclass(eq=False)
+class _Shared:
+    """What an Embree scene shares: kept alive as long as the scene."""
+
+    parts: Parts
+
+
+def _build(parts: Parts, flags: int) -> tuple[int, _Shared]:
     rtc, device = _library(), _device()
     scene = rtc.rtcNewScene(device)
-    rtc.rtcSetSceneFlags(scene, _ROBUST | _FILTER)
+    rtc.rtcSetSceneFlags(scene, flags)
     for positions, triangles in parts:
         mesh = rtc.rtcNewGeometry(device, _TRIANGLES)
-        place, count = positions.ctypes.data, len(positions)
-        rtc.rtcSetSharedGeometryBuffer(mesh, _VERTEX, 0, _FLOAT3, place, 0, 16, count)
-        place, count = triangles.ctypes.data, len(triangles)
-        rtc.rtcSetSharedGeometryBuffer(mesh, _INDEX, 0, _UINT3, place, 0, 12, count)
+        for slot, kind, data in ((_VERTEX, _FLOAT3, positions), (_INDEX, _UINT3, triangles)):
+            place, stride, count = data.ctypes.data, data.strides[0], len(data)
+            rtc.rtcSetSharedGeometryBuffer(mesh, slot, 0, kind, place, 0, stride, count)
         rtc.rtcCommitGeometry(mesh)
         rtc.rtcAttachGeometry(scene, mesh)
         rtc.rtcReleaseGeometry(mesh)
     rtc.rtcCommitScene(scene)
     if problem := rtc.rtcGetDeviceError(device):
-        raise MemoryError(f"Embree could not build {len(parts)} groups: error {problem}")
-    kept = _Groups(parts)
+        count = sum(len(triangles) for _, triangles in parts)
+        raise MemoryError(f"Embree could not build {count} triangles: error {problem}")
+    kept = _Shared(parts)
     weakref.finalize(kept, rtc.rtcReleaseScene, scene)
     return int(scene), kept
 
 
-@dataclass(eq=False)
-class _Groups:
-    parts: list[tuple[F32, NDArray[np.uint32]]]
+def build_groups(parts: Parts) -> tuple[int, object]:
+    """An Embree scene with a geometry for each part, by index: positions float32 (n, 4), triangles
+    uint32 (m, 3), shared, not copied. Returns its handle, and what must be kept as long as it."""
+    return _build(parts, _ROBUST | _FILTER)
 
 
 @dataclass(slots=True)
@@ -118,14 +127,6 @@ class Intersections:
     t: F32
 
 
-@dataclass(eq=False)
-class _Buffers:
-    """What an Embree scene shares: kept alive as long as the scene."""
-
-    vertices: F32
-    triangles: NDArray[np.uint32]
-
-
 class Accelerator:
     """Acceleration structures over the triangles of a :class:`RayGeometry`.
 
@@ -135,7 +136,7 @@ class Accelerator:
 
     def __init__(self, geometry: RayGeometry) -> None:
         self.first_moving = geometry.first_moving
-        self._kept: dict[str, _Buffers] = {}
+        self._kept: dict[str, _Shared] = {}
         self.scene = self._build("scene", geometry, slice(0, geometry.first_moving))
         self.moving = 0
         self.rebuild_moving(geometry)
@@ -150,23 +151,8 @@ class Accelerator:
             return 0
         vertices = np.zeros((len(geometry.vertices) + 1, 3), np.float32)  # Embree reads 16 bytes
         vertices[:-1] = geometry.vertices
-        rtc, device = _library(), _device()
-        scene = rtc.rtcNewScene(device)
-        rtc.rtcSetSceneFlags(scene, _ROBUST)
-        mesh = rtc.rtcNewGeometry(device, _TRIANGLES)
-        place, count = vertices.ctypes.data, len(geometry.vertices)
-        rtc.rtcSetSharedGeometryBuffer(mesh, _VERTEX, 0, _FLOAT3, place, 0, 12, count)
-        place, count = triangles.ctypes.data, len(triangles)
-        rtc.rtcSetSharedGeometryBuffer(mesh, _INDEX, 0, _UINT3, place, 0, 12, count)
-        rtc.rtcCommitGeometry(mesh)
-        rtc.rtcAttachGeometry(scene, mesh)
-        rtc.rtcReleaseGeometry(mesh)
-        rtc.rtcCommitScene(scene)
-        if problem := rtc.rtcGetDeviceError(device):
-            raise MemoryError(f"Embree could not build {len(triangles)} triangles: error {problem}")
-        self._kept[name] = _Buffers(vertices, triangles)
-        weakref.finalize(self._kept[name], rtc.rtcReleaseScene, scene)
-        return int(scene)
+        scene, self._kept[name] = _build([(vertices[:-1], triangles)], _ROBUST)
+        return scene
 
     def _record(self) -> NDArray[Any]:
         from nau_py.raytrace.kernels.tables import SCENE
