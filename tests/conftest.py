@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,12 @@ import nau_py
 
 ROOT = Path(__file__).parent.parent
 PROJECTS = ROOT / "projects"
+
+
+def heed_interrupts() -> None:
+    """For a child process that a test will interrupt: shells start background jobs, the test run
+    perhaps among them, with the signal ignored, and children inherit that."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 class Folder:

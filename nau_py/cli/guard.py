@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from nau_py.diagnostic import Diagnostic, error
 from nau_py.model.linked import Project
+from nau_py.model.program_source import launches_ptx
 from nau_py.model.raytrace import RaytracePass
-from nau_py.passes.ptx import MARKS, SLOTS, runs_ptx
+from nau_py.passes.ptx.execute import MARKS, SLOTS
 
 Words = NDArray[np.int64]
 _PERIOD = 0.1
@@ -27,7 +28,9 @@ def needed(project: Project, programs: str) -> bool:
     """Whether a run of ``project`` must be guarded, and is not yet."""
     passes = [p for pipeline in project.pipelines for p in pipeline.passes]
     traced = (p for p in passes if isinstance(p, RaytracePass))
-    return MARKS not in os.environ and any(runs_ptx(p, project.folder, programs) for p in traced)
+    return MARKS not in os.environ and any(
+        launches_ptx(p, project.folder, programs) for p in traced
+    )
 
 
 def run_guarded(

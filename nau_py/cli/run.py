@@ -88,7 +88,7 @@ def run(
     ] = None,
     programs: Annotated[
         Programs | None,
-        typer.Option(help="Of class rt: compiled programs, or the Python files beside them."),
+        typer.Option(help="ptx: compiled programs (default); py: Python files beside them."),
     ] = None,
     program_limit: Annotated[
         float, typer.Option(min=0.1, help="Seconds that a compiled program may take for a pixel.")

@@ -8,8 +8,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from nau_py.model.program_source import plain_name
+
 _ENTRY = re.compile(rb"^\s*\.visible\s+\.entry\s+([\w$]+)", re.MULTILINE)
-_MANGLED = re.compile(r"_Z(\d+)(\w+)")
 _KINDS = {
     "raygen": "ray generation",
     "anyhit": "any hit",
@@ -21,20 +22,12 @@ _KINDS = {
 
 
 def exports(path: Path) -> list[str] | None:
-    """Names of the entry points in file order, as C++ spells them; None where it cannot be read.
-
-    Itanium C++ ABI, 5.1: ``_Z``, a length, and the name for a function outside of namespaces.
-    """
+    """Names of the entry points in file order, as C++ spells them; None: it cannot be read."""
     try:
         data = path.read_bytes()
     except OSError:
         return None
-    return [_plain(found.decode()) for found in _ENTRY.findall(data)]
-
-
-def _plain(name: str) -> str:
-    found = _MANGLED.match(name)
-    return found[2][: int(found[1])] if found else name
+    return [plain_name(found.decode()) for found in _ENTRY.findall(data)]
 
 
 def kind_of(name: str) -> str:

@@ -5,10 +5,12 @@ Element names are those of Nau's class ``rt``; the ``optix*`` spelling is upgrad
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Annotated
 
 from pydantic import Field
 
+from nau_py.model.maps import matches
 from nau_py.model.node import Attr, Child, Items, Node
 from nau_py.model.passes import Pass
 from nau_py.model.values import DataType
@@ -184,6 +186,19 @@ class RaytracePass(Pass):
         flagged = [i for i in self.rtInput if i.mask]
         named = [i for i in self.rtInput if i.var == "mask"]
         return next(iter(flagged + named), None)
+
+    def entry(self, names: Iterable[str]) -> RayMaterial | None:
+        """The programs of a material that goes by ``names``: its exact entry, the first prefix in
+        byte order, else the default's (7.1)."""
+        known = set(names)
+        for node in self.rtMaterialMap:
+            if node.to in known:
+                return node
+        prefixed = [n for n in self.rtMaterialMap if n.to and n.to.endswith("*")]
+        for node in sorted(prefixed, key=lambda n: (n.to or "").encode()):
+            if any(matches(node.to or "", name) for name in known):
+                return node
+        return self.rtDefaultMaterial
 
     @property
     def materials(self) -> list[RayMaterial]:

@@ -31,8 +31,8 @@ class RunOptions:
     write 0 or 1 into the mask of the raytrace pass. ``texture_filter``: ``NEAREST`` or ``LINEAR``
     for image textures whose filter the project leaves open. ``window_format``: the window's texel
     format; ``RGBA32F`` keeps what 8 bits would round and clamp. ``effects``: ``auto``, ``all``,
-    ``none`` or a list, in the place of the project's. ``programs``: ``ptx`` or ``py`` where a
-    pass of class ``rt`` has both.
+    ``none`` or a list, in the place of the project's. ``programs``: ``py`` for
+    the Python files beside compiled programs.
     """
 
     samples: int | None = None

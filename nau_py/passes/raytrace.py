@@ -12,9 +12,10 @@ from nau_py.diagnostic import Diagnostic
 from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
+from nau_py.model.program_source import launches_ptx
 from nau_py.model.raytrace import RaytracePass
 from nau_py.passes.access import add_process, buffer, texture
-from nau_py.passes.ptx import execute_ptx, ptx_faults, runs_ptx
+from nau_py.passes.ptx.faults import ptx_faults
 from nau_py.passes.stages import Stages
 
 if TYPE_CHECKING:
@@ -29,6 +30,9 @@ class RaytraceClass:
         if isinstance(pass_, RaytracePass):
             for source in pass_.rtInput:
                 access.add_read(texture(source.texture, None))
+            if launches_ptx(pass_, project.folder):
+                for output in pass_.rtOutput:
+                    access.add_write(texture(output.texture, None))
             for parameter in pass_.rtGlobalParams:
                 name = parameter.context
                 if parameter.component == "ID" and name in project.names("texture"):
@@ -46,7 +50,7 @@ class RaytraceClass:
 
     def faults(self, project: Project, pass_: Pass) -> Iterable[Diagnostic]:
         """What of its compiled programs cannot be run. Pure."""
-        if isinstance(pass_, RaytracePass) and runs_ptx(pass_, project.folder):
+        if isinstance(pass_, RaytracePass) and launches_ptx(pass_, project.folder):
             return ptx_faults(project, pass_)
         return ()
 
@@ -66,7 +70,9 @@ class RaytraceClass:
 
         if not isinstance(pass_, RaytracePass) or pass_.rtEntryPoint is None:
             return
-        if runs_ptx(pass_, frame.project.folder, frame.session.options.programs):
+        if launches_ptx(pass_, frame.project.folder, frame.session.options.programs):
+            from nau_py.passes.ptx.execute import execute_ptx
+
             execute_ptx(pass_, frame, record)
             return
         frame.camera = frame.world.camera(pass_.camera_name)

@@ -13,7 +13,6 @@ from nau_py.diagnostic import warning
 from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, EXCEPTION, MISS, RAY_GENERATION
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
-from nau_py.model.maps import matches
 from nau_py.model.raytrace import Program, RaytracePass, RayVariable, component
 from nau_py.model.raytrace import RayMaterial as RayMaterialNode
 from nau_py.model.texture import Texture
@@ -108,20 +107,7 @@ class TracingState:
     def entry(self, pass_: RaytracePass, name: str) -> RayMaterialNode | None:
         """The programs of a material: its exact entry, a prefix's, else the default's (7.1)."""
         mapped = self.mapped[name]
-        names = {name}
-        if mapped is not None:
-            names |= {f"{mapped.library}:{mapped.name}", f"{mapped.library}::{mapped.name}"}
-        for node in pass_.rtMaterialMap:
-            if node.to in names:
-                return node
-        prefixed = sorted(
-            (n for n in pass_.rtMaterialMap if n.to and n.to.endswith("*")),
-            key=lambda n: n.to or "",
-        )
-        for node in prefixed:
-            if matches(node.to or "", name):
-                return node
-        return pass_.rtDefaultMaterial
+        return pass_.entry({name} | (mapped.names if mapped is not None else set()))
 
     def _bind(self, pass_: RaytracePass, loader: ProgramLoader) -> ProgramTable:
         table: ProgramTable = {}
@@ -309,3 +295,13 @@ def store_colours(target: Target, pixels: NDArray[np.int64], colours: NDArray[np
     channels = texture_.format.channels
     shaped = image.reshape(target.height, target.width, 4)[:, :, :channels]
     texture_.write_values(shaped)
+
+
+def clear_pixels(target: Target, kept: NDArray[np.int64]) -> None:
+    """Give every pixel but those ``kept`` the clear value, in the first colour texture."""
+    texture_ = target.textures[target.colors[0].name]
+    values = texture_.read_values().astype(np.float32)
+    colours = values.reshape(-1, values.shape[2])[kept]
+    padded = np.zeros((len(kept), 4), np.float32)
+    padded[:, : values.shape[2]] = colours
+    store_colours(target, kept, padded)

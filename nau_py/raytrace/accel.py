@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ctypes
 import weakref
+from collections.abc import Sequence
 from ctypes import c_char_p, c_int, c_size_t, c_ssize_t, c_uint, c_void_p
 from dataclasses import dataclass
 from functools import lru_cache
@@ -25,7 +26,8 @@ from nau_py.raytrace.vectors import F32, Mask
 
 NO_HIT = -1
 _VERSION_PROPERTY = 0  # RTC_DEVICE_PROPERTY_VERSION of rtcore_device.h
-_TRIANGLES, _INDEX, _VERTEX = 0, 0, 1  # rtcore_geometry.h, rtcore_buffer.h
+_TRIANGLES, _USER = 0, 120  # rtcore_geometry.h
+_INDEX, _VERTEX = 0, 1  # rtcore_buffer.h
 _UINT3, _FLOAT3 = 0x5003, 0x9003  # rtcore_common.h
 _ROBUST, _FILTER = 1 << 2, 1 << 3  # RTC_SCENE_FLAG_ROBUST, …_FILTER_FUNCTION_IN_ARGUMENTS
 _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
@@ -41,6 +43,10 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
         None,
         [c_void_p, c_int, c_uint, c_int, c_void_p, c_size_t, c_size_t, c_size_t],
     ),
+    "rtcSetGeometryUserPrimitiveCount": (None, [c_void_p, c_uint]),
+    "rtcSetGeometryUserData": (None, [c_void_p, c_void_p]),
+    "rtcSetGeometryBoundsFunction": (None, [c_void_p, c_void_p, c_void_p]),
+    "rtcSetGeometryIntersectFunction": (None, [c_void_p, c_void_p]),
     "rtcCommitGeometry": (None, [c_void_p]),
     "rtcAttachGeometry": (c_uint, [c_void_p, c_void_p]),
     "rtcCommitScene": (None, [c_void_p]),
@@ -79,7 +85,48 @@ def embree_version() -> str:
     return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
 
 
-Parts = list[tuple[F32, NDArray[np.uint32]]]
+@dataclass(slots=True)
+class Triangles:
+    """Positions float32 (n, 3) or (n, 4) and triangles uint32 (m, 3), shared, not copied."""
+
+    positions: F32
+    triangles: NDArray[np.uint32]
+
+    @property
+    def count(self) -> int:
+        return len(self.triangles)
+
+    def make(self, rtc: ctypes.CDLL, device: int) -> int:
+        mesh = int(rtc.rtcNewGeometry(device, _TRIANGLES))
+        for slot, kind, data in (
+            (_VERTEX, _FLOAT3, self.positions),
+            (_INDEX, _UINT3, self.triangles),
+        ):
+            place, stride, count = data.ctypes.data, data.strides[0], len(data)
+            rtc.rtcSetSharedGeometryBuffer(mesh, slot, 0, kind, place, 0, stride, count)
+        return mesh
+
+
+@dataclass(slots=True)
+class Custom:
+    """Primitives that functions describe: addresses of ``RTCBoundsFunction`` and
+    ``RTCIntersectFunctionN``, and of what the first one is given."""
+
+    count: int
+    bounds: int
+    intersect: int
+    user: int
+
+    def make(self, rtc: ctypes.CDLL, device: int) -> int:
+        made = int(rtc.rtcNewGeometry(device, _USER))
+        rtc.rtcSetGeometryUserPrimitiveCount(made, self.count)
+        rtc.rtcSetGeometryUserData(made, self.user)  # the bounds function is given no other
+        rtc.rtcSetGeometryBoundsFunction(made, self.bounds, None)
+        rtc.rtcSetGeometryIntersectFunction(made, self.intersect)
+        return made
+
+
+Parts = Sequence[Triangles | Custom]
 
 
 @dataclass(eq=False)
@@ -93,26 +140,23 @@ def _build(parts: Parts, flags: int) -> tuple[int, _Shared]:
     rtc, device = _library(), _device()
     scene = rtc.rtcNewScene(device)
     rtc.rtcSetSceneFlags(scene, flags)
-    for positions, triangles in parts:
-        mesh = rtc.rtcNewGeometry(device, _TRIANGLES)
-        for slot, kind, data in ((_VERTEX, _FLOAT3, positions), (_INDEX, _UINT3, triangles)):
-            place, stride, count = data.ctypes.data, data.strides[0], len(data)
-            rtc.rtcSetSharedGeometryBuffer(mesh, slot, 0, kind, place, 0, stride, count)
-        rtc.rtcCommitGeometry(mesh)
-        rtc.rtcAttachGeometry(scene, mesh)
-        rtc.rtcReleaseGeometry(mesh)
+    for part in parts:
+        made = part.make(rtc, device)
+        rtc.rtcCommitGeometry(made)
+        rtc.rtcAttachGeometry(scene, made)
+        rtc.rtcReleaseGeometry(made)
     rtc.rtcCommitScene(scene)
     if problem := rtc.rtcGetDeviceError(device):
-        count = sum(len(triangles) for _, triangles in parts)
-        raise MemoryError(f"Embree could not build {count} triangles: error {problem}")
+        count = sum(part.count for part in parts)
+        raise MemoryError(f"Embree could not build {count} primitives: error {problem}")
     kept = _Shared(parts)
     weakref.finalize(kept, rtc.rtcReleaseScene, scene)
     return int(scene), kept
 
 
 def build_groups(parts: Parts) -> tuple[int, object]:
-    """An Embree scene with a geometry for each part, by index: positions float32 (n, 4), triangles
-    uint32 (m, 3), shared, not copied. Returns its handle, and what must be kept as long as it."""
+    """An Embree scene with a geometry for each part, by index. Returns its handle, and what must
+    be kept as long as it."""
     return _build(parts, _ROBUST | _FILTER)
 
 
@@ -151,7 +195,7 @@ class Accelerator:
             return 0
         vertices = np.zeros((len(geometry.vertices) + 1, 3), np.float32)  # Embree reads 16 bytes
         vertices[:-1] = geometry.vertices
-        scene, self._kept[name] = _build([(vertices[:-1], triangles)], _ROBUST)
+        scene, self._kept[name] = _build([Triangles(vertices[:-1], triangles)], _ROBUST)
         return scene
 
     def _record(self) -> NDArray[Any]:

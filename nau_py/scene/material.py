@@ -13,6 +13,7 @@ from nau_py.model.texture import ArrayOfTextures
 from nau_py.model.values import Scalar
 from nau_py.scene.model_material import DEFAULT_COLOURS, ModelMaterial
 
+OLD_DEFAULT = DEFAULT_LIBRARY.lstrip("_")
 Settings = dict[str, Setting]
 Colours = dict[str, tuple[float, ...]]
 
@@ -74,6 +75,14 @@ class RenderMaterial:
     state: dict[str, tuple[Scalar, ...]] = field(default_factory=dict)
     program: tuple[str, str] = (DEFAULT_LIBRARY, "dirLightDifAmbPix")
     uniforms: tuple[UniformSource, ...] = ()
+
+    @property
+    def names(self) -> set[str]:
+        """What raytrace passes call it: alone, or after its library. Old projects write the default
+        library's name without underscores."""
+        libraries = {self.library} | ({OLD_DEFAULT} if self.library == DEFAULT_LIBRARY else set())
+        joined = {f"{lib}{sign}{self.name}" for lib in libraries for sign in (":", "::")}
+        return {self.name} | joined
 
     def clone(self, library: str) -> RenderMaterial:
         """A copy for an injection map: sampler and image settings and image arrays are lost, as in

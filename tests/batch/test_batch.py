@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from nau_py.batch.process import run_limited
-from tests.conftest import Folder
+from tests.conftest import Folder, heed_interrupts
 from tests.raytrace.studio import colour, program, square, studio
 
 RUN = [str(Path(sys.executable).parent / "nau-run")]
@@ -169,6 +169,7 @@ def test_an_interrupted_batch_ends_at_once(tmp_path: Path) -> None:
         [*RUN, "--batch", str(tmp_path / "class"), "--report", str(page), "--quiet"],
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=heed_interrupts,
     )
     time.sleep(4)
     begun = time.monotonic()

@@ -165,9 +165,8 @@ stands in, and there is no reference. Made by
 python -m tests.corpus --nau CHECKOUT --oracle DIR --out report.html --markdown docs/conformance.md
 ```
 
-What does not run says why. Class `rt` runs the shipped PTX ([programs](programs.md)); against the
-pictures of real OptiX `tests/corpus/test_ptx.py` compares it. Older PTX runs where a Python file stands beside
-them ([programs](programs.md)). The profiler's picture differs by its text: the real one writes more
+What does not run says why. Ray tracing runs the shipped PTX, of classes `rt` and `optix`
+([programs](programs.md)); `tests/corpus/test_ptx.py` compares it with pictures of real OptiX. The profiler's picture differs by its text: the real one writes more
 lines, in a font of its own, of a clock that stood still.
 
 """

@@ -140,8 +140,8 @@ def test_programs_are_trusted_as_python_ones_are(room: Folder) -> None:
         nau_py.Renderer(room.load(), options=options).render()
 
 
-def test_python_stands_in_where_it_is_there(room: Folder) -> None:
-    """A file of the same name beside it, unless the run wants the compiled programs."""
+def test_python_stands_in_where_it_is_asked_for(room: Folder) -> None:
+    """A file of the same name beside it, if the run wants Python programs."""
     room.write(
         "room.py",
         "import numpy as np\n\n"
@@ -151,8 +151,9 @@ def test_python_stands_in_where_it_is_there(room: Folder) -> None:
         "def first_only(hits):\n    return np.ones(len(hits), bool)\n\n"
         "def blue(rays):\n    return np.array([0.0, 0.0, 0.5])\n",
     )
-    python = nau_py.Renderer(room.load()).render().targets["L::out"]
-    compiled = nau_py.Renderer(room.load(), options=nau_py.RunOptions(programs="ptx")).render()
+    options = nau_py.RunOptions(programs="py")
+    python = nau_py.Renderer(room.load(), options=options).render().targets["L::out"]
+    compiled = nau_py.Renderer(room.load()).render()
     assert python[24, 32].tolist()[:3] == [102, 51, 26]
     assert compiled.targets["L::out"][24, 32].tolist()[:3] == [204, 102, 51]
 

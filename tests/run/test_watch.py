@@ -17,7 +17,7 @@ import nau_py
 from nau_py.run.renderer import Renderer
 from nau_py.run.used import used_files
 from nau_py.run.watch import Watch
-from tests.conftest import PROJECTS, Folder
+from tests.conftest import PROJECTS, Folder, heed_interrupts
 
 PROJECT = """\
 <project name="Watched" width="16" height="16">
@@ -232,6 +232,7 @@ def test_the_command(watched: Folder) -> None:
             [Path(sys.executable).parent / "nau-run", watched.path / "project.xml", "--watch",
              "-o", output, "--quiet"],
             stderr=stream,
+            preexec_fn=heed_interrupts,
         )  # fmt: skip
     try:
         wait(lambda: "first picture: " in log.read_text())

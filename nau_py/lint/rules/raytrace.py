@@ -14,7 +14,7 @@ from nau_py.lint.rule import ERROR, WARNING, Facts, check, rule
 from nau_py.model.builtins import BUILTIN_PROGRAMS, EXCEPTION, RAY_GENERATION
 from nau_py.model.linked import Project
 from nau_py.model.pass_classes import RAYTRACE_CLASSES
-from nau_py.model.program_source import stand_in, strip_decoration
+from nau_py.model.program_source import COMPILED, launches_ptx, stand_in, strip_decoration
 from nau_py.model.raytrace import BUILTIN, Program, RaytracePass
 from nau_py.paths import resolve, similar
 from nau_py.plugins import PREFIX, program_files
@@ -57,10 +57,11 @@ T005 = rule(
     "T005",
     ERROR,
     "Compiled program without a Python counterpart",
-    "A `.ptx` of class `optix` or `raytrace` runs only where a Python file of the same name stands "
-    "beside it, with functions in the place of what it exports. Class `rt` runs those of OptiX 7.",
-    "class='optix', file='x.ptx' alone",
-    "file='x.ptx' with x.py beside it",
+    "A pass launches compiled programs where its ray generation program is one; else a `.ptx` runs "
+    "only where a Python file of the same name stands beside it, with functions in the place of "
+    "what it exports.",
+    "<rayGen file='a.py' …/> and <rtProgram file='x.ptx' …/> alone",
+    "all of them in x.ptx, or x.py beside it",
 )
 T015 = rule(
     "T015",
@@ -79,6 +80,33 @@ T016 = rule(
     "launch index.",
     "ld.global.f32 %f1, [0];",
     "an address of the launch parameters or of the record",
+)
+T017 = rule(
+    "T017",
+    ERROR,
+    "Program variable that nothing sets",
+    "A compiled program of OptiX 3 to 6 reads a variable by name, and neither the pass nor nau_py "
+    "sets one of that name. Set are: eye, U, V, W, fov, top_object, the ray types, output0 and on, "
+    "vertex_buffer, index_buffer, the vertex attributes, tex0 to tex7, and what the pass names.",
+    "rtDeclareVariable(float4, lightdir, , ); and <valueof optixVar='lightDir' …/>",
+    "<valueof optixVar='lightdir' …/>",
+)
+T018 = rule(
+    "T018",
+    WARNING,
+    "Program variable of another size",
+    "A compiled program declares a variable with other bytes than what the pass sets.",
+    "rtDeclareVariable(float3, diffuse, , ); and COLOR DIFFUSE, four floats",
+    "rtDeclareVariable(float4, diffuse, , );",
+)
+T019 = rule(
+    "T019",
+    WARNING,
+    "Compiled program threw",
+    "It threw an exception, rays went deeper than 20, or it reached beyond a buffer: its exception "
+    "program ran at these launch indices, or their work ended.",
+    "rtTrace inside of a closest hit program without an end",
+    "if (prd.depth < 8) rtTrace(…);",
 )
 T006 = rule(
     "T006",
@@ -108,7 +136,7 @@ T009 = rule(
     "T009",
     WARNING,
     "Output buffer not written",
-    "This version writes the first colour of the render target only.",
+    "Python programs write the first colour of the render target only.",
     "<optixOutput><buffer var='extra' …/>",
     "write to the render target",
 )
@@ -186,10 +214,11 @@ def completeness(facts: Facts) -> Iterator[Diagnostic]:
             yield T008.at(pass_.location, f"raytrace pass '{pass_.name}' has no <renderTarget>")
         if not pass_.ray_types:
             yield T008.at(pass_.location, f"raytrace pass '{pass_.name}' has no ray type")
-        for output in pass_.rtOutput:
+        compiled = launches_ptx(pass_, facts.project.folder)
+        for output in pass_.rtOutput if not compiled else []:
             yield T009.at(
                 output.location,
-                f"output '{output.var}' of pass '{pass_.name}' is not written by this version",
+                f"output '{output.var}' of pass '{pass_.name}' is not written by Python programs",
             )
         declared = [t.name for t in pass_.rtRayTypes if t.name]
         for material in pass_.materials:
@@ -207,13 +236,15 @@ def completeness(facts: Facts) -> Iterator[Diagnostic]:
 def programs(facts: Facts) -> Iterator[Diagnostic]:
     """Every program's file and procedure, without executing anything."""
     for _, pass_ in raytrace_passes(facts.project):
+        compiled = launches_ptx(pass_, facts.project.folder)
         for program, kind, whose in used_programs(pass_):
             label = ", ".join([f"pass '{pass_.name}'", *whose])
-            yield from _program(facts.project, program, kind, label)
+            yield from _program(facts.project, program, kind, label, compiled)
 
 
 def used_programs(pass_: RaytracePass) -> Iterator[tuple[Program, str, list[str]]]:
-    """(program, kind, its material and ray type in words) of everything that a pass names."""
+    """(program, kind, its material and ray type in words) of everything that a pass names. Python
+    programs meet triangles, whatever its geometry programs."""
     entry = pass_.rtEntryPoint
     if entry is not None and entry.rayGen is not None:
         yield entry.rayGen, RAY_GENERATION, []
@@ -224,21 +255,29 @@ def used_programs(pass_: RaytracePass) -> Iterator[tuple[Program, str, list[str]
             whose = [f"material '{material.to or 'default'}'", f"ray type '{group.name}'"]
             for program in group.programs:
                 yield program, program.type or "", whose
+    if _is_compiled(entry.rayGen if entry else None):
+        for geometry in pass_.rtGeometryProgram:
+            yield geometry, geometry.type or "", []
+
+
+def _is_compiled(program: Program | None) -> bool:
+    return program is not None and (program.file or "").lower().endswith(COMPILED)
 
 
 @check
 def compiled_programs(facts: Facts) -> Iterator[Diagnostic]:
-    """What the compiled files of a pass export, where no Python file stands in."""
+    """What the compiled files of a pass export, where they are launched or nothing stands in."""
     folder = facts.project.folder
     for _, pass_ in raytrace_passes(facts.project):
         uses: dict[str, list[tuple[Program, str, list[str]]]] = {}
         for program, kind, whose in used_programs(pass_):
-            if program.file and program.proc and program.file.lower().endswith(".ptx"):
+            if program.file and program.proc and _is_compiled(program):
                 uses.setdefault(program.file, []).append((program, kind, whose))
         for file, listed in uses.items():
             known = exports(resolve(folder, file).best)
-            if known and stand_in(folder, file) is None:
-                yield from _exports(pass_, file, known, listed)
+            launched = launches_ptx(pass_, folder)
+            if known and (launched or stand_in(folder, file) is None):
+                yield from _exports(pass_, file, known, listed, launched)
 
 
 @check
@@ -251,7 +290,11 @@ def compiled_code(facts: Facts) -> Iterator[Diagnostic]:
 
 
 def _exports(
-    pass_: RaytracePass, file: str, known: list[str], uses: list[tuple[Program, str, list[str]]]
+    pass_: RaytracePass,
+    file: str,
+    known: list[str],
+    uses: list[tuple[Program, str, list[str]]],
+    launched: bool,
 ) -> Iterator[Diagnostic]:
     label, sibling = f"pass '{pass_.name}'", resolve(Path(), file).path.with_suffix(".py").name
     roles: dict[str, list[str]] = {name: [] for name in known}
@@ -266,8 +309,8 @@ def _exports(
                 f"{listing(known)}{nearest(proc, known)}",
                 fixes=guess(program.where("proc"), proc, known),
             )
-    if pass_.class_ == "rt":
-        return  # it runs them
+    if launched:
+        return
     listed = [
         f"{name} ({'; '.join(used) or f'not used {kind_of(name)}'.rstrip()})"
         for name, used in roles.items()
@@ -279,10 +322,14 @@ def _exports(
     )
 
 
-def _program(project: Project, program: Program, kind: str, label: str) -> Iterator[Diagnostic]:
+def _program(
+    project: Project, program: Program, kind: str, label: str, launched: bool
+) -> Iterator[Diagnostic]:
     file, proc = program.file, program.proc
     if file is None or proc is None:
         return  # S004 says so
+    if launched and resolve(project.folder, file).exists:
+        return  # it is read as what it is
     if file == BUILTIN:
         fitting = [name for name, (of, _) in BUILTIN_PROGRAMS.items() if of == kind]
         if proc not in fitting:

@@ -1,10 +1,11 @@
-"""Textures as CUDA reads them for compiled PTX programs: wrapped, bilinear or by point.
+"""Textures as CUDA reads them for compiled PTX programs: wrapped, between texels or by point.
 
 *CUDA C++ Programming Guide*, "Texture Fetching": with linear filtering the weights have 8 bits.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from functools import lru_cache
 from math import floor
 from typing import Any
@@ -12,6 +13,7 @@ from typing import Any
 import numba
 import numpy as np
 from numba import types
+from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.jit import inner
 from nau_py.raytrace.kernels.memory import f32, i8, i32, i64, put_f32
@@ -23,25 +25,61 @@ TEXTURE = np.dtype(
         ("height", "i4"),
         ("depth", "i4"),
         ("channels", "i4"),
-        ("linear", "i4"),
+        ("bytes", "i4"),
         ("dimensions", "i4"),
+        ("linear", "i4"),
+        ("clamp", "i4"),
+        ("by_texel", "i4"),
     ],
     align=True,
 )
-"""A texture object: address of the texels, row 0 at the bottom; ``linear``: bytes that are read as
-0 to 1 between texels, else float32 by the nearest one; ``dimensions``: 2 or 3, in which it must be
-asked for: else all is 0."""
+"""A texture object: address of the texels, row 0 at the bottom; ``bytes``: they are read as 0 to 1,
+else they are float32; ``dimensions``: 2 or 3, in which it must be asked for, else all is 0;
+``linear``: between texels, else the nearest; ``clamp``: 1 for the first axis, 2 for the second:
+the last texel goes on, else the texture repeats; ``by_texel``: coordinates count texels."""
 _WEIGHT = 256.0
 
 
+@dataclass(slots=True)
+class Image:
+    """A texture: uint8 or float32 (h, w, c), or (d, h, w, c) for a volume. By default bytes are
+    read between texels and floats by the nearest, as Nau sets it."""
+
+    texels: NDArray[Any]
+    linear: bool | None = None
+    clamp: tuple[bool, bool] = (False, False)
+    by_texel: bool = False
+    record: NDArray[np.void] = field(init=False)
+
+    def __post_init__(self) -> None:
+        texels: NDArray[Any] = np.ascontiguousarray(self.texels)
+        self.texels = texels
+        shape = texels.shape if texels.ndim == 4 else (1, *texels.shape)
+        self.record = np.zeros(1, TEXTURE)
+        self.record["texels"] = texels.ctypes.data
+        self.record["depth"], self.record["height"], self.record["width"] = shape[:3]
+        of_bytes = texels.dtype == np.uint8
+        self.record["channels"], self.record["bytes"] = shape[3], of_bytes
+        self.record["dimensions"] = texels.ndim - 1
+        self.record["linear"] = of_bytes if self.linear is None else self.linear
+        self.record["clamp"] = self.clamp[0] + 2 * self.clamp[1]
+        self.record["by_texel"] = self.by_texel
+
+    @property
+    def handle(self) -> int:
+        return int(self.record.ctypes.data)
+
+
 @inner
-def _wrapped(index: int, size: int) -> int:
-    return index % size if size > 0 else 0
+def _wrapped(index: int, size: int, clamp: int) -> int:
+    if size <= 0:
+        return 0
+    return min(max(index, 0), size - 1) if clamp != 0 else index % size
 
 
 @inner
 def _texel(handle: Any, texels: Any, at: int, channel: int) -> float:
-    """One channel of a texel; missing ones are 0, a missing alpha of bytes is 1."""
+    """One channel of a texel; missing ones are 0."""
     channels = i32(handle, 5)
     if channel >= channels:
         return 0.0
@@ -50,32 +88,68 @@ def _texel(handle: Any, texels: Any, at: int, channel: int) -> float:
     return f32(texels, at * channels + channel)
 
 
+@inner
+def _scaled(x: float, size: int, by_texel: bool) -> float:
+    return x if by_texel else x * size
+
+
+@inner
+def _nearest(x: float, scaled: float, size: int, plain: bool) -> int:
+    """The texel at a coordinate; one that repeats is reduced before it is scaled."""
+    return floor(scaled) if plain else min(int((x - floor(x)) * size), size - 1)
+
+
+@inner
+def _weight(place: float) -> float:
+    return floor((place - floor(place)) * _WEIGHT + 0.5) / _WEIGHT
+
+
+@inner
+def _plane(
+    handle: Any, texels: Any, row: int, left: int, right: int, low: int, high: int,
+    a: float, b: float, channel: int,
+) -> float:  # fmt: skip
+    """Between four texels; ``row``: the first texel of the plane."""
+    under = _texel(handle, texels, row + low + left, channel) * (1 - a)
+    under += _texel(handle, texels, row + low + right, channel) * a
+    over = _texel(handle, texels, row + high + left, channel) * (1 - a)
+    over += _texel(handle, texels, row + high + right, channel) * a
+    return under * (1 - b) + over * b
+
+
 def _sample(handle: Any, dimensions: int, x: float, y: float, z: float, out: Any) -> None:
-    if handle == 0 or i32(handle, 7) != dimensions:
+    finite = abs(x) < 1e9 and abs(y) < 1e9 and abs(z) < 1e9
+    if handle == 0 or i32(handle, 7) != dimensions or not finite:
         for channel in range(4):
             put_f32(out, channel, 0.0)
         return
     texels = np.uint64(i64(handle, 0))
     width, height, depth = i32(handle, 2), i32(handle, 3), i32(handle, 4)
-    if i32(handle, 6) == 0:
-        i = min(int((x - floor(x)) * width), width - 1)
-        j = min(int((y - floor(y)) * height), height - 1)
-        k = min(int((z - floor(z)) * depth), depth - 1)
+    clamp_x, clamp_y = i32(handle, 9) & 1, i32(handle, 9) & 2
+    linear, by_texel = i32(handle, 8) != 0, i32(handle, 10) != 0
+    u, v, w = _scaled(x, width, by_texel), _scaled(y, height, by_texel), _scaled(z, depth, by_texel)
+    if not linear:
+        i = _wrapped(_nearest(x, u, width, by_texel or clamp_x != 0), width, clamp_x)
+        j = _wrapped(_nearest(y, v, height, by_texel or clamp_y != 0), height, clamp_y)
+        k = _wrapped(_nearest(z, w, depth, by_texel), depth, 0)
         for channel in range(4):
             put_f32(out, channel, _texel(handle, texels, (k * height + j) * width + i, channel))
         return
-    u, v = x * width - 0.5, y * height - 0.5
+    u, v, w = u - 0.5, v - 0.5, w - 0.5
     i, j = floor(u), floor(v)
-    a = floor((u - i) * _WEIGHT + 0.5) / _WEIGHT
-    b = floor((v - j) * _WEIGHT + 0.5) / _WEIGHT
-    left, right = _wrapped(i, width), _wrapped(i + 1, width)
-    below, above = _wrapped(j, height) * width, _wrapped(j + 1, height) * width
+    a, b = _weight(u), _weight(v)
+    left, right = _wrapped(i, width, clamp_x), _wrapped(i + 1, width, clamp_x)
+    low, high = _wrapped(j, height, clamp_y) * width, _wrapped(j + 1, height, clamp_y) * width
+    if depth == 1:
+        for channel in range(4):
+            put_f32(out, channel, _plane(handle, texels, 0, left, right, low, high, a, b, channel))
+        return
+    c, size = _weight(w), width * height
+    near, far = _wrapped(floor(w), depth, 0) * size, _wrapped(floor(w) + 1, depth, 0) * size
     for channel in range(4):
-        low = _texel(handle, texels, below + left, channel) * (1 - a)
-        low += _texel(handle, texels, below + right, channel) * a
-        high = _texel(handle, texels, above + left, channel) * (1 - a)
-        high += _texel(handle, texels, above + right, channel) * a
-        put_f32(out, channel, low * (1 - b) + high * b)
+        front = _plane(handle, texels, near, left, right, low, high, a, b, channel)
+        back = _plane(handle, texels, far, left, right, low, high, a, b, channel)
+        put_f32(out, channel, front * (1 - c) + back * c)
 
 
 @lru_cache(maxsize=1)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import re
+from functools import partial
 
-from nau_py.raytrace.ptx import optix7
+from nau_py.raytrace.ptx import optix6, optix7
 from nau_py.raytrace.ptx.arithmetic import ARITHMETIC, Handler
 from nau_py.raytrace.ptx.bits import BITS
-from nau_py.raytrace.ptx.function import FRAME, Writer, integer, split
+from nau_py.raytrace.ptx.data import global_text
+from nau_py.raytrace.ptx.frame import unwind
+from nau_py.raytrace.ptx.function import FRAME, Writer, split
 from nau_py.raytrace.ptx.memory import MEMORY
-from nau_py.raytrace.ptx.reader import SIZES, Function, Instruction, Module, PtxError, Variable
+from nau_py.raytrace.ptx.reader import Function, Instruction, Module, PtxError, Variable
 
 HANDLERS: dict[str, Handler] = ARITHMETIC | BITS | MEMORY
 PARAMETERS = "optixLaunchParams"
@@ -21,6 +23,23 @@ _OVERFLOWS = "".join(
 )
 
 
+_RUNTIME = """
+declare void @nau.trace(ptr, i64, float, float, float, float, float, float, float, float, float,
+                        i32, i32, i32, i32, i32, ptr)
+declare void @nau.texture(i64, i32, float, float, float, ptr)
+declare i32 @nau.attribute(ptr, i32)
+declare i32 @nau.potential(ptr, float)
+declare i32 @nau.report(ptr)
+declare i32 @nau.report7(ptr, float, i32, ptr, i64)
+declare i64 @nau.element(ptr, i64, i32, i64, i64, i64)
+declare i64 @nau.callable(ptr, i32)
+declare void @nau.vertices(ptr, i32, i32, ptr)
+declare void @nau.print_start(ptr, i64)
+declare void @nau.print_write(ptr, i32, i32)
+declare void @nau.printf(ptr, i64, i64)
+"""
+
+
 def compile_module(module: Module) -> str:
     """LLVM's text. Raises :class:`PtxError` with the line of what is not supported."""
     found, errors = compile_all(module)
@@ -29,65 +48,47 @@ def compile_module(module: Module) -> str:
     return found
 
 
-def compile_all(module: Module) -> tuple[str, list[PtxError]]:
-    """LLVM's text of every function that can be compiled, and what is wrong with the others."""
-    address = {v.name: f'@"{v.name}"' for v in module.variables}
+def compile_all(module: Module, layout: optix6.Layout | None = None) -> tuple[str, list[PtxError]]:
+    """LLVM's text of every function that can be compiled, and what is wrong with the others.
+    ``layout``: where variables of OptiX 6 lie; of this module alone where none is given."""
     errors: list[PtxError] = []
-    parts: list[str] = []
-    for variable in {v.name: v for v in module.variables}.values():
+    try:
+        if layout is None:
+            layout = optix6.Layout()
+            layout.add(module)
+        places = layout.bindings(module)
+    except PtxError as error:
+        return "", [error]
+    address = {f.name: f'@"{f.name}"' for f in module.functions.values() if f.body is not None}
+    own = {v.name: v for v in module.variables if v.name not in places}
+    address |= {name: f'@"{name}"' for name in own}
+    parts = [_RUNTIME]
+    for variable in own.values():
         try:
-            parts.append(_global(variable))
+            parts.append(global_text(variable))
         except PtxError as error:
             errors.append(error)
-    parts.append("declare void @nau.trace(ptr, i64, float, float, float, float, float, float, "
-                 "float, float, float, i32, i32, i32, i32, i32, ptr)")  # fmt: skip
-    parts.append("declare void @nau.texture(i64, i32, float, float, float, ptr)")
     for function in module.functions.values():
         if function.body is None:
             continue
         try:
-            parts.append(_function(module, function, address))
+            parts.append(_function(module, function, address, places))
         except PtxError as error:
             errors.append(error)
     return "\n".join(parts) + "\n" + _OVERFLOWS, errors
 
 
-def _global(variable: Variable) -> str:
-    """Memory of a variable outside of functions."""
-    size = max(variable.size, 1)
-    name = f'@"{variable.name}"'
-    data = _initial(variable)
-    text = "zeroinitializer"
-    if data is not None:
-        filled = (data + bytes(size))[:size]
-        text = "[" + ", ".join(f"i8 {byte}" for byte in filled) + "]"
-    return f"{name} = global [{size} x i8] {text}, align {max(variable.align, 16)}"
+def _bound(places: dict[str, tuple[str, int]], w: Writer, name: str) -> str | None:
+    return optix6.bound(w, *places[name]) if name in places else None
 
 
-def _initial(variable: Variable) -> bytes | None:
-    if not variable.value:
-        return None
-    try:
-        return _bytes(variable)
-    except ValueError:
-        said = f"'{variable.name}' has a value that is no number"
-        raise PtxError(variable.line, said) from None
-
-
-def _bytes(variable: Variable) -> bytes:
-    width = SIZES[variable.type]
-    words = re.findall(r"-?0[xX][0-9a-fA-F]+|-?0[fFdD][0-9a-fA-F]+|-?\d+", variable.value)
-    data = b""
-    for word in words:
-        if re.match(r"0[fFdD]", word):
-            data += int(word[2:], 16).to_bytes(width, "little")
-        else:
-            data += (integer(word) % (1 << 8 * width)).to_bytes(width, "little")
-    return data
-
-
-def _function(module: Module, function: Function, address: dict[str, str]) -> str:
-    w = Writer(module, function, address)
+def _function(
+    module: Module,
+    function: Function,
+    address: dict[str, str],
+    places: dict[str, tuple[str, int]],
+) -> str:
+    w = Writer(module, function, address, partial(_bound, places))
     w.line = function.line
     takes = [f"ptr {FRAME}"]
     for number, variable in enumerate([*function.returns, *function.takes]):
@@ -109,7 +110,7 @@ def _function(module: Module, function: Function, address: dict[str, str]) -> st
         else:
             _guarded(w, instruction, labels)
     w.emit("ret void")
-    linkage = "" if function.entry else "internal "
+    linkage = "" if function.entry or function.visible else "internal "
     head = f'define {linkage}void @"{function.name}"({", ".join(takes)}) nounwind {{'
     entry = ['"entry":', *w.head, '  br label %"begin"', '"begin":']
     return "\n".join([head, *entry, *w.lines, "}"])
@@ -172,28 +173,42 @@ def _call(w: Writer, operands: tuple[str, ...]) -> None:
         raise w.fail("a call names no procedure")
     name = parts.pop(0)
     takes = _listed(parts.pop(0)) if parts and parts[0].startswith("(") else []
-    if name.startswith("_"):
-        if not optix7.known(name) and name not in w.module.functions:
-            raise w.fail(f"'{name}' is not supported")
-        if optix7.known(name):
-            optix7.call(w, name, returns, takes)
+    for interface in (optix7, optix6):
+        if interface.known(name):
+            interface.call(w, name, returns, takes)
             return
     target = w.module.functions.get(name)
-    if target is None:
+    if w.register(name) is not None:  # by its address: a callable program
+        pointer = w.value(f"inttoptr i64 {w.read(name, 'u64')} to ptr")
+        _enter(w, pointer, name, [*returns, *takes])
+    elif target is None:
+        if name.startswith("_"):
+            raise w.fail(f"'{name}' is not supported")
         raise w.fail(f"there is no procedure '{name}'")
-    if target.body is None:
+    elif target.body is None:
         if name != "vprintf":
             raise w.fail(f"procedure '{name}' is declared, but is not there")
-        return  # what programs print for people is left out
-    arguments = [f"ptr {FRAME}"]
-    for operand in [*returns, *takes]:
-        found = w.place(operand)
-        if found is None:
-            raise w.fail(f"argument '{operand}' of '{name}' is no parameter")
-        arguments.append(f"ptr {found}")
-    if len(arguments) != 1 + len(target.returns) + len(target.takes):
+        form, values = (_parameter(w, operand, name) for operand in takes[:2])
+        loaded = [w.value(f"load i64, ptr {p}, align 1") for p in (form, values)]
+        w.emit(f"call void @nau.printf(ptr {FRAME}, i64 {loaded[0]}, i64 {loaded[1]})")
+    elif len(returns) + len(takes) != len(target.returns) + len(target.takes):
         raise w.fail(f"'{name}' takes another number of arguments")
-    w.emit(f'call void @"{name}"({", ".join(arguments)})')
+    else:
+        _enter(w, f'@"{name}"', name, [*returns, *takes])
+
+
+def _enter(w: Writer, pointer: str, name: str, operands: list[str]) -> None:
+    """A call with the addresses of results and arguments."""
+    arguments = [f"ptr {FRAME}", *(f"ptr {_parameter(w, o, name)}" for o in operands)]
+    w.emit(f"call void {pointer}({', '.join(arguments)})")
+    unwind(w)
+
+
+def _parameter(w: Writer, operand: str, name: str) -> str:
+    found = w.place(operand)
+    if found is None:
+        raise w.fail(f"argument '{operand}' of '{name}' is no parameter")
+    return found
 
 
 def _listed(text: str) -> list[str]:

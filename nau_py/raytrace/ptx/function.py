@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import struct
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from nau_py.raytrace.ptx.reader import SIZES, Function, Instruction, Module, PtxError, Variable
@@ -62,6 +63,8 @@ class Writer:
     function: Function
     address: dict[str, str]
     """Names of the module's variables to their LLVM names."""
+    bound: Callable[[Writer, str], str | None] = lambda writer, name: None
+    """The address of a variable that is not the module's own."""
     lines: list[str] = field(default_factory=list)
     head: list[str] = field(default_factory=list)
     """Of the entry block: memory on the stack."""
@@ -91,6 +94,11 @@ class Writer:
         name = self.new()
         self.emit(f"{name} = {text}")
         return name
+
+    def label(self, name: str) -> str:
+        """A name for a block, used once."""
+        self._count += 1
+        return f"{name}{self._count}"
 
     def block(self, name: str) -> None:
         """Begin a block; the one before goes on into it."""
@@ -196,10 +204,8 @@ class Writer:
 
     def place(self, name: str) -> str | None:
         """The address of a variable, as a pointer."""
-        found = self.places.get(name)
-        if found is not None:
-            return found
-        return self.address.get(name)
+        found = self.places.get(name) or self.address.get(name)
+        return found if found is not None else self.bound(self, name)
 
     def fit(self, value: str, held: str, type_: str) -> str:
         """A value of one PTX type as another: bits kept, cut off, or filled up by the sign of

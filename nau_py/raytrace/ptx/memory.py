@@ -34,15 +34,21 @@ def store(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
 
 
 def texture(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
-    """``tex.2d.v4.f32.f32 {r,g,b,a}, [handle, {x, y}]``: by the runtime's sampler."""
-    kind = words[0]
-    if kind not in _TEXTURES or words[1:] != ["v4", "f32", "f32"]:
-        raise w.fail("textures are read in 1, 2 or 3 dimensions, four floats by floats")
+    """``tex.2d.v4.f32.f32 {r,g,b,a}, [handle, {x, y}]``: by the runtime's sampler. Textures have
+    one level here, so one that is asked for, or gradients, change nothing."""
+    if words[0] in ("base", "level", "grad"):
+        words = words[1:]
+    kind, coordinates = words[0], words[-1]
+    if kind not in _TEXTURES or words[1:-1] != ["v4", "f32"] or coordinates not in ("f32", "s32"):
+        raise w.fail("textures are read in 1, 2 or 3 dimensions, four floats by floats or integers")
     inside = operands[1].strip("[]")
-    handle, _, place = inside.partition(",")
-    at = [w.read(p.strip(), "f32") for p in place.strip().strip("{}").split(",")]
+    handle, _, place = (part.strip() for part in inside.partition(","))
+    at = [w.read(p.strip(), coordinates) for p in place.strip("{}").split(",")]
+    if coordinates == "s32":
+        at = [w.value(f"sitofp i32 {value} to float") for value in at]
     at = [*at[: _TEXTURES[kind]], "0.0", "0.0"][:3]
-    number = w.read(handle.strip(), "u64")
+    held = w.place(handle) if w.register(handle) is None else None  # a variable of OptiX 6
+    number = w.read(handle, "u64") if held is None else w.value(f"load i64, ptr {held}")
     out = w.stack("float", 4)
     listed = ", ".join(f"float {value}" for value in at)
     w.emit(f"call void @nau.texture(i64 {number}, i32 {_TEXTURES[kind]}, {listed}, ptr {out})")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
 import hashlib
 import platform
 from functools import lru_cache
@@ -15,6 +16,7 @@ import llvmlite.binding as llvm
 from nau_py.files import write_bytes
 from nau_py.raytrace.accel import load_embree
 from nau_py.raytrace.kernels.jit import cache_folder
+from nau_py.raytrace.ptx.frame import fill_in
 
 
 class NotNative(Exception):
@@ -67,14 +69,17 @@ class Native:
         """The address of a function; 0 where there is none."""
         return int(self._engine.get_function_address(name))
 
-    def variable(self, name: str) -> int:
-        """The address of a variable; 0 where there is none."""
-        return int(self._engine.get_global_value_address(name))
+    def set_variable(self, name: str, data: bytes) -> None:
+        """Write a variable of the module, where it has one of that name."""
+        place = int(self._engine.get_global_value_address(name))
+        if place:
+            ctypes.memmove(place, data, len(data))
 
 
+@lru_cache(maxsize=1)
 def _runtime() -> str:
     """What programs call. Only x86 has the register that makes denormals zero."""
-    text = RUNTIME.read_text("utf-8")
+    text = fill_in(RUNTIME.read_text("utf-8"))
     if platform.machine().lower() in ("x86_64", "amd64"):
         return text
     return "\n".join(line for line in text.splitlines() if "mxcsr" not in line)

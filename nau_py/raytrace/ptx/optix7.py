@@ -1,155 +1,215 @@
-"""The calls of OptiX 7's device interface, and the frame that they read (OptiX 7 headers).
-
-A *frame* is what one program runs with: the launch, the ray, the hit, the payload. It lies on the
-stack of whoever calls the program; places are offsets in bytes.
-"""
+"""The calls of OptiX 7's and 8's device interface (OptiX headers, ``optix_device.h``)."""
 
 from __future__ import annotations
 
 import re
 
-from nau_py.raytrace.ptx.function import FRAME, Writer, llvm
+from nau_py.raytrace.ptx.frame import (
+    DETAILS,
+    IGNORE,
+    TERMINATE,
+    TRACED,
+    address,
+    launched,
+    leave,
+    place,
+    read,
+    throw,
+    trace,
+    unwind,
+)
+from nau_py.raytrace.ptx.function import FRAME, Writer
 
-PLACES: dict[str, tuple[int, str]] = {
-    "launch": (0, "u64"),
-    "payload": (8, "u64"),
-    "record": (16, "u64"),
-    "primitive": (24, "u32"),
-    "u": (28, "f32"),
-    "v": (32, "f32"),
-    "origin_x": (36, "f32"),
-    "origin_y": (40, "f32"),
-    "origin_z": (44, "f32"),
-    "direction_x": (48, "f32"),
-    "direction_y": (52, "f32"),
-    "direction_z": (56, "f32"),
-    "tmin": (60, "f32"),
-    "tmax": (64, "f32"),
-    "time": (68, "f32"),
-    "flags": (72, "u32"),
-    "mask": (76, "u32"),
-    "hit_kind": (80, "u32"),
-    "depth": (84, "u32"),
-    "status": (88, "u32"),
-    "index_x": (92, "u32"),
-    "index_y": (96, "u32"),
-    "index_z": (100, "u32"),
-    "group": (104, "u32"),
-}
-"""Name to offset and type. ``record``: the address of the record's data."""
-FRAME_BYTES = 112
-IGNORE, TERMINATE = 1, 2
-"""Bits of ``status`` that any-hit programs set."""
-LAUNCH: dict[str, tuple[int, str]] = {
-    "scene": (0, "u64"),
-    "hit_records": (8, "u64"),
-    "miss_records": (16, "u64"),
-    "width": (24, "u32"),
-    "height": (28, "u32"),
-    "layers": (32, "u32"),
-    "max_depth": (36, "u32"),
-    "hit_count": (40, "u32"),
-    "miss_count": (44, "u32"),
-    "rays": (48, "u64"),
-    "raygen_record": (56, "u64"),
-    "flush": (64, "u32"),
-    "mark": (72, "u64"),
-}
-"""Of the launch. ``rays``: the address of a thread's counters; ``flush``: denormals are zero;
-``mark``: the address of the launch index that a thread works at."""
-LAUNCH_BYTES = 80
 _READS = {
-    "_optix_get_sbt_data_ptr_64": ("record",),
-    "_optix_read_primitive_idx": ("primitive",),
-    "_optix_get_triangle_barycentrics": ("u", "v"),
-    "_optix_get_ray_tmin": ("tmin",),
-    "_optix_get_ray_tmax": ("tmax",),
-    "_optix_get_ray_time": ("time",),
-    "_optix_get_ray_flags": ("flags",),
-    "_optix_get_ray_visibility_mask": ("mask",),
-    "_optix_get_hit_kind": ("hit_kind",),
-    "_optix_read_sbt_gas_idx": ("group",),
+    "get_sbt_data_ptr_64": ("record",),
+    "read_primitive_idx": ("primitive",),
+    "get_triangle_barycentrics": ("u", "v"),
+    "get_ray_tmin": ("tmin",),
+    "get_ray_tmax": ("tmax",),
+    "get_ray_time": ("time",),
+    "get_ray_flags": ("flags",),
+    "get_ray_visibility_mask": ("mask",),
+    "get_hit_kind": ("hit_kind",),
+    "read_sbt_gas_idx": ("group",),
+    "get_exception_code": ("code",),
 }
 for _axis in "xyz":
-    for _space in ("world", "object"):
+    for _space in ("world", "object"):  # one structure, no instances: the same
         for _what in ("origin", "direction"):
-            _READS[f"_optix_get_{_space}_ray_{_what}_{_axis}"] = (f"{_what}_{_axis}",)
-    _READS[f"_optix_get_launch_index_{_axis}"] = (f"index_{_axis}",)
-_DIMENSIONS = {
-    f"_optix_get_launch_dimension_{axis}": size
-    for axis, size in (("x", "width"), ("y", "height"), ("z", "layers"))
+            _READS[f"get_{_space}_ray_{_what}_{_axis}"] = (f"{_what}_{_axis}",)
+    _READS[f"get_launch_index_{_axis}"] = (f"index_{_axis}",)
+_LAUNCHED = {
+    "get_launch_dimension_x": "width",
+    "get_launch_dimension_y": "height",
+    "get_launch_dimension_z": "layers",
 }
 _CONSTANT = {
-    "_optix_read_instance_id": "0",
-    "_optix_read_instance_idx": "0",
-    "_optix_get_transform_list_size": "0",
+    "read_instance_id": "0",
+    "read_instance_idx": "0",
+    "get_transform_list_size": "0",
+    "get_transform_list_handle": "0",
+    "get_transform_type_from_handle": "0",
+    "get_instance_id_from_handle": "0",
+    "get_instance_child_from_handle": "0",
+    "get_instance_transform_from_handle": "0",
+    "get_instance_inverse_transform_from_handle": "0",
+    "get_static_transform_from_handle": "0",
+    "get_matrix_motion_transform_from_handle": "0",
+    "get_srt_motion_transform_from_handle": "0",
+    "get_gas_traversable_handle": "1",
+    "get_gas_motion_step_count": "0",
+    "get_gas_motion_time_begin": "0",
+    "get_gas_motion_time_end": "0",
+    "get_exception_line_info": "0",
+    "undef_value": "0",
 }
-MOST_PAYLOAD = 8
-_TRACE = re.compile(r"_optix_trace_([0-8])$")
-_PAYLOAD = re.compile(r"_optix_(get|set)_payload_([0-7])$")
-
-
-def place(w: Writer, base: str, offset: int) -> str:
-    return w.value(f"getelementptr i8, ptr {base}, i64 {offset}")
-
-
-def read(w: Writer, name: str) -> tuple[str, str]:
-    """A value of the frame, and its type."""
-    offset, type_ = PLACES[name]
-    return w.value(f"load {llvm(type_)}, ptr {place(w, FRAME, offset)}"), type_
+"""Without instances: what the headers document where none was visited. The list of transforms is
+empty, so nobody asks for one."""
+_TRIANGLE, _CUSTOM = 0x2531, 0x2500
+"""OPTIX_PRIMITIVE_TYPE_TRIANGLE and _CUSTOM (optix_types.h)."""
+MOST_PAYLOAD = 32
+_TRACE = re.compile(r"trace_([0-8])$")
+_PAYLOAD = re.compile(r"(get|set)_payload_([0-7])$")
+_ATTRIBUTE = re.compile(r"get_attribute_([0-7])$")
+_REPORT = re.compile(r"report_intersection_([0-8])$")
+_THROW = re.compile(r"throw_exception_([0-8])$")
+_DETAIL = re.compile(r"get_exception_detail_([0-7])$")
+_VERTICES = re.compile(r"get_triangle_vertex_data(_current_hit|_from_handle)?$")
+_PATTERNS = (_TRACE, _PAYLOAD, _ATTRIBUTE, _REPORT, _THROW, _DETAIL, _VERTICES)
+_OTHERS = {
+    "ignore_intersection",
+    "terminate_ray",
+    "trace_typed_32",
+    "get_payload",
+    "set_payload",
+    "set_payload_types",
+    "call_direct_callable",
+    "call_continuation_callable",
+    "get_remaining_trace_depth",
+    "get_backface_from_hit_kind",
+    "get_primitive_type_from_hit_kind",
+}
+_PREFIX = "_optix_"
 
 
 def known(name: str) -> bool:
     """Whether a call is one of these."""
+    if not name.startswith(_PREFIX):
+        return False
+    short = name.removeprefix(_PREFIX)
     return (
-        name in _READS
-        or name in _CONSTANT
-        or name in ("_optix_ignore_intersection", "_optix_terminate_ray")
-        or name in _DIMENSIONS
-        or bool(_TRACE.match(name) or _PAYLOAD.match(name))
+        short in _READS
+        or short in _LAUNCHED
+        or short in _CONSTANT
+        or short in _OTHERS
+        or any(pattern.match(short) for pattern in _PATTERNS)
     )
 
 
 def call(w: Writer, name: str, returns: list[str], takes: list[str]) -> None:
     """One call. ``returns``: registers, ``takes``: operands."""
-    if name in _READS:
-        for register, what in zip(returns, _READS[name]):
+    short = name.removeprefix(_PREFIX)
+    if short in _READS:
+        for register, what in zip(returns, _READS[short]):
             w.write(register, *read(w, what))
-    elif name in _CONSTANT:
-        w.write(returns[0], _CONSTANT[name], "u32")
-    elif name in _DIMENSIONS:
-        offset, type_ = LAUNCH[_DIMENSIONS[name]]
-        launch = w.value(f"inttoptr i64 {read(w, 'launch')[0]} to ptr")
-        w.write(returns[0], w.value(f"load i32, ptr {place(w, launch, offset)}"), type_)
-    elif name in ("_optix_ignore_intersection", "_optix_terminate_ray"):
-        bit = IGNORE if "ignore" in name else TERMINATE
-        status, _ = read(w, "status")
-        value = w.value(f"or i32 {status}, {bit}")
-        w.emit(f"store i32 {value}, ptr {place(w, FRAME, PLACES['status'][0])}")
-        w.jump("ret void")  # the program ends there
-    elif found := _PAYLOAD.match(name):
-        payload = w.value(f"inttoptr i64 {read(w, 'payload')[0]} to ptr")
-        word = place(w, payload, 4 * int(found[2]))
-        if found[1] == "get":
-            w.write(returns[0], w.value(f"load i32, ptr {word}"), "u32")
-        else:
-            w.emit(f"store i32 {w.read(takes[0], 'u32')}, ptr {word}")
+    elif short in _CONSTANT:
+        for register in returns:
+            w.write(register, _CONSTANT[short], "u64")
+    elif short in _LAUNCHED:
+        w.write(returns[0], *launched(w, _LAUNCHED[short]))
+    elif short in ("ignore_intersection", "terminate_ray"):
+        leave(w, IGNORE if "ignore" in short else TERMINATE)
+    elif short == "set_payload_types":
+        pass  # how a payload is divided: it is whole here
+    elif short in ("get_payload", "set_payload") or _PAYLOAD.match(short):
+        _payload(w, short, returns, takes)
+    elif short == "trace_typed_32":
+        if len(takes) < 17:
+            raise w.fail("a trace call has too few arguments")
+        _trace(w, returns, takes[1:16], takes[17:])
+    elif _TRACE.match(short):
+        _trace(w, returns, takes[: len(TRACED)], takes[len(TRACED) :])
+    elif found := _ATTRIBUTE.match(short):
+        out = w.value(f"call i32 @nau.attribute(ptr {FRAME}, i32 {found[1]})")
+        w.write(returns[0], out, "u32")
+    elif _REPORT.match(short):
+        _report(w, returns, takes)
+    elif _THROW.match(short):
+        code, *details = [w.read(operand, "u32") for operand in takes]
+        throw(w, code, details[:DETAILS])
+    elif found := _DETAIL.match(short):
+        w.write(returns[0], *launched(w, f"detail_{found[1]}"))
+    elif match := _VERTICES.match(short):
+        _vertices(w, returns, [] if match[1] == "_current_hit" else takes)
     else:
-        trace(w, returns, takes)
+        _asked(w, short, returns, takes)
 
 
-def trace(w: Writer, returns: list[str], takes: list[str]) -> None:
-    """``(payload …) = _optix_trace_N(handle, origin, direction, tmin, tmax, time, mask, flags,
-    SBT offset, SBT stride, miss index, payload …)``."""
-    types = ["u64", *["f32"] * 9, *["u32"] * 5]
-    if len(takes) < len(types):
+def _asked(w: Writer, short: str, returns: list[str], takes: list[str]) -> None:
+    if short == "get_remaining_trace_depth":
+        most, depth = launched(w, "max_depth")[0], read(w, "depth")[0]
+        w.write(returns[0], w.value(f"sub i32 {most}, {depth}"), "u32")
+    elif short == "get_backface_from_hit_kind":
+        back = w.value(f"icmp eq i32 {w.read(takes[0], 'u32')}, 255")
+        w.write(returns[0], w.value(f"zext i1 {back} to i32"), "u32")
+    elif short == "get_primitive_type_from_hit_kind":
+        own = w.value(f"icmp ult i32 {w.read(takes[0], 'u32')}, 128")
+        what = w.value(f"select i1 {own}, i32 {_CUSTOM}, i32 {_TRIANGLE}")
+        w.write(returns[0], what, "u32")
+    else:  # a callable's address, 0 with an exception where there is none
+        index = w.read(takes[0], "u32")
+        found = w.value(f"call i64 @nau.callable(ptr {FRAME}, i32 {index})")
+        unwind(w)
+        w.write(returns[0], found, "u64")
+
+
+def _payload(w: Writer, short: str, returns: list[str], takes: list[str]) -> None:
+    """``get_payload_0`` of OptiX 7.0, ``get_payload, (0)`` of later ones."""
+    found = _PAYLOAD.match(short)
+    number = found[2] if found else takes.pop(0)
+    index = w.read(number, "u32")
+    wide = w.value(f"zext i32 {index} to i64")
+    word = w.value(f"getelementptr i32, ptr {address(w, 'payload')}, i64 {wide}")
+    if short.startswith("get"):
+        w.write(returns[0], w.value(f"load i32, ptr {word}"), "u32")
+    else:
+        w.emit(f"store i32 {w.read(takes[0], 'u32')}, ptr {word}")
+
+
+def _trace(w: Writer, returns: list[str], takes: list[str], payload: list[str]) -> None:
+    """``(payload …) = trace_N(handle, origin, direction, tmin, tmax, time, mask, flags, SBT
+    offset, SBT stride, miss index, payload …)``."""
+    if len(takes) < len(TRACED):
         raise w.fail("a trace call has too few arguments")
-    values = [w.read(operand, type_) for operand, type_ in zip(takes, types)]
-    payload = w.stack("i32", MOST_PAYLOAD)
-    for index, operand in enumerate(takes[len(types) :]):
-        word = place(w, payload, 4 * index)
-        w.emit(f"store i32 {w.read(operand, 'u32')}, ptr {word}")
-    listed = ", ".join(f"{llvm(t)} {v}" for t, v in zip(types, values))
-    w.emit(f"call void @nau.trace(ptr {FRAME}, {listed}, ptr {payload})")
+    values = {n: w.read(o, t) for o, (n, t) in zip(takes, TRACED.items())}
+    words = w.stack("i32", MOST_PAYLOAD)
+    for index, operand in enumerate(payload[:MOST_PAYLOAD]):
+        w.emit(f"store i32 {w.read(operand, 'u32')}, ptr {place(w, words, 4 * index)}")
+    trace(w, values, words)
+    for index, register in enumerate(returns[:MOST_PAYLOAD]):
+        w.write(register, w.value(f"load i32, ptr {place(w, words, 4 * index)}"), "u32")
+
+
+def _report(w: Writer, returns: list[str], takes: list[str]) -> None:
+    """``(taken) = report_intersection_N(distance, kind, attribute …)``."""
+    distance, kind = w.read(takes[0], "f32"), w.read(takes[1], "u32")
+    words = w.stack("i32", 8)
+    for index, operand in enumerate(takes[2:10]):
+        w.emit(f"store i32 {w.read(operand, 'u32')}, ptr {place(w, words, 4 * index)}")
+    count = max(len(takes) - 2, 0)
+    taken = w.value(
+        f"call i32 @nau.report7(ptr {FRAME}, float {distance}, i32 {kind}, ptr {words}, "
+        f"i64 {4 * count})"
+    )
+    unwind(w)
+    w.write(returns[0], taken, "u32")
+
+
+def _vertices(w: Writer, returns: list[str], takes: list[str]) -> None:
+    """``(nine floats) = get_triangle_vertex_data(handle, primitive, SBT index, time)``."""
+    primitive = w.read(takes[1], "u32") if takes else read(w, "primitive")[0]
+    group = w.read(takes[2], "u32") if takes else read(w, "group")[0]
+    out = w.stack("float", 9)
+    w.emit(f"call void @nau.vertices(ptr {FRAME}, i32 {primitive}, i32 {group}, ptr {out})")
     for index, register in enumerate(returns):
-        w.write(register, w.value(f"load i32, ptr {place(w, payload, 4 * index)}"), "u32")
+        w.write(register, w.value(f"load float, ptr {place(w, out, 4 * index)}"), "f32")

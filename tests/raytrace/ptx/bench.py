@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import ctypes
 from typing import Any
 
 import numpy as np
 
 from nau_py.raytrace.ptx.compile import compile_module
-from nau_py.raytrace.ptx.launch import RECORD, Scene, launch
+from nau_py.raytrace.ptx.launch import Launch, record_table, run_launch
 from nau_py.raytrace.ptx.native import Native
 from nau_py.raytrace.ptx.reader import SIZES, read_ptx
 
@@ -60,15 +59,16 @@ def run(body: str, inputs: dict[str, Array] | list[tuple[str, Array]], output: s
     count = len(arrays[0])
     out = np.zeros(count, TYPES[output])
     pointers = np.array([a.ctypes.data for a in [*arrays, out]], np.uint64)
-    ctypes.memmove(native.variable("optixLaunchParams"), pointers.ctypes.data, pointers.nbytes)
-    nothing = np.zeros(1, RECORD)
-    launch(
+    native.set_variable("optixLaunchParams", pointers.tobytes())
+    nothing = record_table(1, 16)
+    launch = Launch(
         (native, native.address("run")),
-        Scene([]),
+        0,
+        nothing,
         nothing,
         nothing,
         (count, 1),
-        1,
         flush=module.flushes,
     )
+    run_launch(launch, [native], threads=1)
     return out

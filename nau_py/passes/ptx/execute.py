@@ -1,0 +1,161 @@
+"""Runs a raytrace pass whose programs are compiled."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.diagnostic import warning
+from nau_py.model.linked import Project
+from nau_py.model.raytrace import RaytracePass
+from nau_py.passes.ptx.optix import OptixState
+from nau_py.passes.ptx.programs import Programs
+from nau_py.passes.ptx.rt import RtState
+from nau_py.passes.stages import Stages
+
+if TYPE_CHECKING:
+    from nau_py.passes.frame import FrameContext, PassRecord, Session
+    from nau_py.raytrace.ptx.launch import Launched
+
+MARKS = "NAU_PTX_MARKS"
+"""The variable that names the file of a guarding process."""
+SLOTS = 64
+"""Of that file: 64-bit words of text, and launch indices in work."""
+_TOLD = 20
+"""Printed texts that a report has."""
+_CODES = {
+    -1: "stack overflow",
+    -2: "trace depth exceeded",
+    -10: "no such callable program",
+    0x3FB: "index out of bounds",
+    0x3FC: "trace depth exceeded",
+    0x3FD: "buffer index out of bounds, or elements of another size",
+    0x3FE: "invalid ray",
+}
+"""Exception codes of OptiX (``optix_types.h``, ``optix_declarations.h``) and of the runtime."""
+
+
+class _NoShading:
+    def forget(self) -> None:
+        """Compiled programs call no GLSL."""
+
+
+class PtxState:
+    """What such a pass keeps from frame to frame."""
+
+    def __init__(self, pass_: RaytracePass, session: Session) -> None:
+        self.session = session
+        self.shading = _NoShading()
+        programs = Programs(pass_, session)
+        self.environment: RtState | OptixState = (OptixState if programs.old else RtState)(
+            pass_, session, programs
+        )
+
+    def bind(self, pass_: RaytracePass) -> None:
+        """Compile the programs anew. Raises :class:`~nau_py.errors.ProgramError`; what was bound
+        then stays."""
+        programs = Programs(pass_, self.session)
+        if programs.old == isinstance(self.environment, OptixState):
+            self.environment.bind(pass_, programs)
+        else:
+            self.environment = (OptixState if programs.old else RtState)(
+                pass_, self.session, programs
+            )
+
+
+def ptx_state(pass_: RaytracePass, session: Session) -> PtxState:
+    key = pass_.name or ""
+    if key not in session.tracers:
+        session.tracers[key] = PtxState(pass_, session)
+    found = session.tracers[key]
+    assert isinstance(found, PtxState)
+    return found
+
+
+def marks(pass_: RaytracePass, project: Project, width: int) -> NDArray[np.int64] | None:
+    """Where a guarding process sees what is being run (``nau_py.cli.guard``); None without one."""
+    path = os.environ.get(MARKS)
+    if not path:
+        return None
+    generate = pass_.rtEntryPoint.rayGen if pass_.rtEntryPoint else None
+    about = f"project '{project.name}', pass '{pass_.name}', program '{generate and generate.proc}'"
+    words = np.memmap(path, np.int64, "r+", shape=(2 * SLOTS,))
+    text = f"{width}\n{about}".encode()[: 8 * SLOTS]
+    words[:SLOTS] = np.frombuffer(text.ljust(8 * SLOTS, b"\0"), np.int64)
+    words[SLOTS:] = -1
+    return words[SLOTS:]
+
+
+def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) -> None:
+    """Launch the pass's programs over its target, or over the pixels that its mask selects."""
+    from nau_py.passes.drawing import process, target_and_rect
+    from nau_py.passes.tracing import clear_pixels, force_mask, read_inputs, read_mask
+    from nau_py.raytrace.launch import select
+    from nau_py.raytrace.ptx.launch import run_launch
+
+    session = frame.session
+    options = session.options
+    frame.camera = frame.world.camera(pass_.camera_name)
+    target, frame.rect = target_and_rect(pass_, frame, uses_camera=True)
+    process(pass_.preProcess, frame)
+    stages = Stages(record)
+    pixels = None
+    if pass_.mask is not None:
+        if options.mask != "project":
+            force_mask(pass_, frame, float(options.mask == "all"))
+        mask = read_mask(pass_, read_inputs(pass_, frame))
+        pixels = select(mask, target.width, target.height)
+        stages.end("read_back")
+    state = ptx_state(pass_, session)
+    environment = state.environment
+    launch = environment.begin(pass_, frame, target)
+    launch.indices = pixels
+    launch.marks = marks(pass_, frame.project, target.width)
+    stages.end("build")
+    name, progress = pass_.name or "", session.progress
+    done = run_launch(
+        launch,
+        list(environment.programs.natives.values()),
+        options.threads,
+        lambda done, total: progress(name, done, total),
+    )
+    stages.end("trace")
+    environment.end(pass_, frame, target)
+    if pixels is not None:
+        clear_pixels(target, pixels)
+    stages.end("read_back")
+    process(pass_.postProcess, frame)
+    record.pixels = target.width * target.height if pixels is None else len(pixels)
+    types = environment.types
+    record.rays = {
+        (types[i] if i < len(types) else f"type {i}"): int(n) for i, n in enumerate(done.rays) if n
+    }
+    _report(pass_, frame, record, done, target.width)
+
+
+def _report(
+    pass_: RaytracePass, frame: FrameContext, record: PassRecord, done: Launched, width: int
+) -> None:
+    """Exceptions and printed text."""
+
+    def place(index: int) -> str:
+        return f"({index % width}, {index // width})"
+
+    if done.thrown:
+        code = done.code - (1 << 32) if done.code >= 1 << 31 else done.code
+        what = f" ({_CODES[code]})" if code in _CODES else ""
+        generate = pass_.rtEntryPoint and pass_.rtEntryPoint.rayGen
+        handler = pass_.rtEntryPoint and pass_.rtEntryPoint.exception
+        then = f"'{handler.proc}' took over" if handler else "their work ended there"
+        said = (
+            f"pass '{pass_.name}': program '{generate and generate.proc}' threw at {done.thrown:,} "
+            f"launch indices, first at {place(done.first)}: code {code}{what}; {then}"
+        )
+        frame.session.resources.diagnostics.append(warning("T019", pass_.location, said))
+    for index, text in done.printed[:_TOLD]:
+        record.notes.append(f"printed at {place(index)}: {text.rstrip()}")
+    if len(done.printed) > _TOLD:
+        record.notes.append(f"… and {len(done.printed) - _TOLD} texts more")

@@ -1,0 +1,281 @@
+"""Class ``optix``: programs of OptiX 3 to 6, from project file to picture. ``data/old.cu`` is theirs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import nau_py
+from tests.conftest import PROJECTS, Folder, pixel_rays
+
+DATA = Path(__file__).parent.parent / "raytrace" / "ptx" / "data" / "old.ptx"
+SIZE = (32, 24)
+PROJECT = """\
+<project name="Old" width="32" height="24">
+  <assets>
+    <scenes><scene name="S"><file name="scene.obj" /></scene></scenes>
+    <cameras>
+      <camera name="C">
+        <projection TYPE="PERSPECTIVE" FOV="60" NEAR="0.1" FAR="100" />
+        <POSITION x="0" y="0" z="3" />
+      </camera>
+    </cameras>
+    <materialLibs><materialLib filename="lib.mlib" /></materialLibs>
+  </assets>
+  <pipelines>
+    <pipeline name="P" defaultCamera="C">
+      <pass name="draw" class="default">
+        <camera name="C" />
+        <scenes><scene name="S" /></scenes>
+        <renderTarget name="drawn" fromLibrary="L" />
+        <materialMaps>
+          <map fromMaterial="*" toLibrary="L" toMaterial="flat" />
+        </materialMaps>
+      </pass>
+      <pass name="trace" class="optix">
+        <camera name="C" />
+        <scenes><scene name="S" /></scenes>
+        <renderTarget name="rt" fromLibrary="L" />
+        <optixEntryPoint>
+          <optixProgram type="RayGen" file="old.ptx" proc="camera" />
+          <optixProgram type="Exception" file="old.ptx" proc="exception" />
+        </optixEntryPoint>
+        <optixDefaultMaterial>
+          <optixProgram type="Closest_Hit" ray="First" file="old.ptx" proc="distance" />
+          <optixProgram type="Miss" ray="First" file="old.ptx" proc="nothing" />
+          <optixProgram type="Any_Hit" ray="Second" file="old.ptx" proc="count" />
+        </optixDefaultMaterial>
+        <optixMaterialMap>
+          <optixMap to="nau_material_lib:Green">
+            <optixProgram type="Closest_Hit" ray="First" file="old.ptx" proc="colour" />
+          </optixMap>
+        </optixMaterialMap>
+        <optixGeometryProgram>
+          <optixProgram type="Geometry_Intersection" file="old.ptx" proc="sphere" />
+          <optixProgram type="Bounding_Box" file="old.ptx" proc="box" />
+        </optixGeometryProgram>
+        <optixVertexAttributes><attribute name="position" /></optixVertexAttributes>
+        <optixMaterialAttributes>
+          <valueof optixVar="diffuse" type="COLOR" context="CURRENT" component="DIFFUSE" />
+        </optixMaterialAttributes>
+        <optixInput>
+          <buffer var="pixels" texture="L::seen" />
+          <buffer var="numbers" texture="L::seen" />
+        </optixInput>
+        <optixOutput><buffer var="extra" texture="L::more" /></optixOutput>
+      </pass>
+    </pipeline>
+  </pipelines>
+</project>
+"""
+LIBRARY = """\
+<materialLib name="L">
+  <renderTargets>
+    <renderTarget name="rt"><SIZE width="32" height="24" />
+      <colors><color name="out" internalFormat="RGBA32F" /></colors></renderTarget>
+    <renderTarget name="side"><SIZE width="32" height="24" />
+      <colors><color name="more" internalFormat="RGBA32F" /></colors></renderTarget>
+    <renderTarget name="drawn"><SIZE width="32" height="24" />
+      <CLEAR_VALUES r="0.5" g="0.125" b="0" a="0" />
+      <colors><color name="seen" internalFormat="RGBA32F" /></colors></renderTarget>
+  </renderTargets>
+  <shaders><shader name="flat" vs="flat.vert" ps="flat.frag" /></shaders>
+  <materials><material name="flat"><shader name="flat"><values>
+    <valueof uniform="PVM" type="RENDERER" context="CURRENT" component="PROJECTION_VIEW_MODEL" />
+  </values></shader></material></materials>
+</materialLib>
+"""
+TRIANGLES = [
+    ("Red", [(-1.0, 0.0, 0.0), (-0.9, 0.0, 0.0), (-0.9, 0.1, 0.0), (-1.0, 0.1, 0.0)]),
+    ("Green", [(0.8, 0.3, -1.0), (0.9, 0.3, -1.0), (0.9, 0.4, -1.0), (0.8, 0.4, -1.0)]),
+]
+"""Quads: of both triangles the first corner is the same, so spheres stand there twice."""
+Picture = np.ndarray[Any, Any]
+
+
+@pytest.fixture
+def old(folder: Folder) -> Folder:
+    folder.write("old.ptx", DATA.read_text())
+    folder.write("lib.mlib", LIBRARY)
+    folder.write("project.xml", PROJECT)
+    vertex = "in vec4 position; uniform mat4 PVM; void main() { gl_Position = PVM * position; }"
+    folder.write("flat.vert", f"#version 330\n{vertex}\n")
+    folder.write(
+        "flat.frag", "#version 330\nout vec4 o; void main() { o = vec4(1, 0.25, 0, 1); }\n"
+    )
+    folder.mtl("scene", {"Red": {"Kd": "0.8 0.4 0.2"}, "Green": {"Kd": "0.2 0.6 0.4"}})
+    folder.obj("scene", TRIANGLES)
+    return folder
+
+
+def render(old: Folder, generate: str = "camera", **options: Any) -> nau_py.Frame:
+    old.write("project.xml", PROJECT.replace('proc="camera"', f'proc="{generate}"'))
+    renderer = nau_py.Renderer(old.load(), options=nau_py.RunOptions(**options))
+    frame = renderer.render()
+    renderer.close()
+    return frame
+
+
+def spheres(centre: tuple[float, ...], radius: float = 0.5) -> tuple[Picture, Picture]:
+    """Near and far distances of the pixels' rays, in lengths of W; NaN for none. float64."""
+    origin, direction = pixel_rays(SIZE, (0, 0, 3))
+    direction = direction / -direction[:, :, 2:]  # programs leave it as long as W is deep
+    o = origin - np.array(centre)
+    a, b = (direction**2).sum(axis=2), (o * direction).sum(axis=2)
+    rest = b * b - a * ((o**2).sum(axis=-1) - radius**2)
+    root = np.sqrt(np.where(rest > 0, rest, np.nan))
+    return (-b - root) / a, (-b + root) / a
+
+
+def test_primitives_that_only_their_programs_know(old: Folder) -> None:
+    """Spheres as user geometry: distances, attributes, materials and misses are analytic ones."""
+    out = render(old).targets["L::out"]
+    red, _ = spheres((-1.0, 0.0, 0.0))
+    green, _ = spheres((0.8, 0.3, -1.0))
+    of_red = red < np.where(np.isnan(green), np.inf, green)
+    of_green = ~of_red & ~np.isnan(green)
+    none = np.isnan(red) & np.isnan(green)
+    assert min(of_red.sum(), of_green.sum(), none.sum()) > 20
+    np.testing.assert_allclose(out[of_red][:, 0], red[of_red], rtol=2e-5)
+    assert (out[of_red][:, 2] == -1).all()  # the near side: what it told of the far one is gone
+    assert (out[of_red][:, 3] == 0).all()  # the ray ends at the hit
+    np.testing.assert_allclose(out[of_green], np.tile([0.2, 0.6, 0.4, 1], (of_green.sum(), 1)))
+    assert (out[none] == [0, 0, 0, -1]).all()
+
+
+def test_any_hit_programs_see_every_candidate(old: Folder) -> None:
+    """Both sides of both spheres of a quad, none of them taken; misses without a program keep what
+    was sent."""
+    out = render(old, "counter").targets["L::out"]
+    near, far = spheres((-1.0, 0.0, 0.0))
+    hit = ~np.isnan(near)
+    np.testing.assert_array_equal(out[:, :, 0][hit], 4)
+    np.testing.assert_allclose(out[:, :, 1][hit], 2 * (near + far)[hit], rtol=1e-4)
+    assert (out[12, 16] == 0).all()
+
+
+def test_threads_change_nothing(old: Folder) -> None:
+    pictures = [render(old, threads=n).targets["L::out"] for n in (1, 3)]
+    np.testing.assert_array_equal(*pictures)
+
+
+def test_exceptions_have_their_program_and_a_finding(old: Folder) -> None:
+    frame = render(old, "throws")
+    out = frame.targets["L::out"]
+    x, y = np.meshgrid(np.arange(32), np.arange(24)[::-1])  # programs count rows from below
+    odd = x % 2 == 1
+    np.testing.assert_array_equal(out[~odd][:, :2], np.stack([x, y], -1)[~odd])
+    np.testing.assert_array_equal(out[~odd][:, 2:], np.tile([32, 24], ((~odd).sum(), 1)))
+    np.testing.assert_array_equal(out[odd][:, 0], -1)
+    np.testing.assert_array_equal(out[odd][:, 1], 1024 + y[odd])
+    (said,) = [w for w in frame.report["warnings"] if "T019" in w]
+    assert "program 'throws' threw at 384 launch indices, first at (1, 0): code 1024" in said
+    assert "'exception' took over" in said
+
+
+def test_rays_without_end_end_at_the_greatest_depth(old: Folder) -> None:
+    old.write("old.ptx", DATA.read_text())
+    text = PROJECT.replace('proc="distance"', 'proc="again"')
+    old.write("project.xml", text)
+    frame = nau_py.Renderer(old.load()).render()
+    out = frame.targets["L::out"]
+    near, _ = spheres((-1.0, 0.0, 0.0))
+    hit = ~np.isnan(near)
+    np.testing.assert_array_equal(out[hit][:, :2], np.tile([-1, 0x3FC], (hit.sum(), 1)))
+    rays = frame.report["frames"][0]["passes"][1]["rays"]["First"]
+    assert rays == 20 * hit.sum() + (~hit).sum()
+    assert any("trace depth exceeded" in w for w in frame.report["warnings"])
+
+
+def test_what_lies_beyond_a_buffer_is_an_exception(old: Folder) -> None:
+    out = render(old, "beyond").targets["L::out"]
+    assert (out[:, :-1] > 0).all()
+    np.testing.assert_array_equal(out[:, -1, :2], np.tile([-1, 0x3FD], (24, 1)))
+
+
+def test_inputs_and_outputs(old: Folder) -> None:
+    """A texture by texels, the same one as a buffer, sizes, and a second output."""
+    frame = render(old, "copies")
+    drawn, out, more = (frame.targets[f"L::{n}"] for n in ("seen", "out", "more"))
+    assert {0.5, 1.0} == set(np.unique(drawn[:, :, 0]))
+    np.testing.assert_array_equal(out[:, :, 0], drawn[:, :, 0])
+    np.testing.assert_array_equal(out[:, :, 1], drawn[:, :, 0])
+    np.testing.assert_array_equal(out[:, :, 2:], np.tile([32.0, 24.0], (24, 32, 1)))
+    np.testing.assert_array_equal(more[:, :, 0], drawn[:, :, 1])
+    np.testing.assert_array_equal(more[:, :, 1:], np.tile([0.25, 0.5, 1], (24, 32, 1)))
+
+
+def test_what_programs_print_is_in_the_report(old: Folder) -> None:
+    notes = render(old, "prints").report["frames"][0]["passes"][1]["notes"]
+    assert notes == [
+        f"printed at (3, {y}): at 3 {y}:  1.50 text 100% -1099511627776" for y in (0, 1)
+    ]
+
+
+def test_lint_knows_the_variables(old: Folder) -> None:
+    assert nau_py.lint(old.load()) == []
+    old.write("project.xml", PROJECT.replace('optixVar="diffuse"', 'optixVar="difuse"'))
+    (found,) = nau_py.lint(old.load())
+    assert found.rule == "T017"
+    assert found.message.startswith(
+        "pass 'trace': program 'colour' of 'old.ptx' reads the plain variable 'diffuse', which "
+        "nothing sets; there is "
+    )
+    assert found.message.endswith("(did you mean 'difuse'?)")
+    with pytest.raises(nau_py.NauError, match="T017"):
+        nau_py.Renderer(old.load())
+    old.write("project.xml", PROJECT.replace('component="DIFFUSE"', 'component="SHININESS"'))
+    (found,) = nau_py.lint(old.load())
+    assert found.rule == "T018"
+    assert (
+        "its variable 'diffuse' has 16 bytes, what the pass sets has 4; the rest is 0"
+        in found.message
+    )
+    old.write("project.xml", PROJECT.replace('proc="box"', 'proc="boxes"'))
+    (found,) = nau_py.lint(old.load())
+    assert found.rule == "T004"
+    assert "'old.ptx' exports no 'boxes'" in found.message
+
+
+def test_python_programs_cannot_be_launched_by_compiled_ones(old: Folder) -> None:
+    old.write("other.py", "def shade(hits): ...\n")
+    text = PROJECT.replace('file="old.ptx" proc="distance"', 'file="other.py" proc="shade"')
+    old.write("project.xml", text)
+    (found,) = nau_py.lint(old.load())
+    assert found.rule == "T015"
+    assert found.message == "pass 'trace': its programs are compiled ones, 'other.py' is none"
+
+
+def test_the_selective_demo_is_that_of_its_python_twin() -> None:
+    """Same mask, same materials, another generator of random numbers: differences are noise. The
+    twin's noise is known from two of its renders; pixels are independent."""
+
+    def radiance(name: str, seed: int) -> tuple[Picture, Picture]:
+        project = nau_py.load(PROJECTS / "selective" / name)
+        renderer = nau_py.Renderer(project, options=nau_py.RunOptions(seed=seed))
+        frame = renderer.render()
+        renderer.close()
+        mask = frame.targets["Hybrid::position"][:, :, 3] > 0
+        return frame.targets["Hybrid::radiance"][:, :, :3].mean(axis=2).astype(np.float64), mask
+
+    compiled, mask = radiance("optix.xml", 0)
+    (first, same), (second, _) = radiance("project.xml", 1), radiance("project.xml", 2)
+    np.testing.assert_array_equal(mask, same)
+    np.testing.assert_allclose(compiled[~mask], first[~mask])  # the clear value
+    count = int(mask.sum())
+    noise = (first - second)[mask] / np.sqrt(2)
+    apart = (compiled - (first + second) / 2)[mask]
+    wanted = noise.std() * np.sqrt(1.5)
+    assert abs(apart.mean()) < 4 * wanted / np.sqrt(count)
+    assert 0.9 < apart.std() / wanted < 1.1
+    # nor is any part of the picture brighter or darker: 16 x 16 blocks, each a sum of many pixels
+    cells = np.where(mask, compiled - (first + second) / 2, 0).reshape(64, 16, 64, 16)
+    spread = np.where(mask, 1.5 * ((first - second) ** 2) / 2, 0).reshape(64, 16, 64, 16)
+    sums, variances = cells.sum(axis=(1, 3)), spread.sum(axis=(1, 3))
+    full = mask.reshape(64, 16, 64, 16).sum(axis=(1, 3)) > 64
+    z = sums[full] / np.sqrt(variances[full] + 1e-9)
+    assert full.sum() > 200
+    assert np.mean(np.abs(z) > 3) < 0.03
