@@ -11,7 +11,7 @@ from nau_py.errors import ProgramError
 from nau_py.model.program_source import COMPILED, plain_name
 from nau_py.model.raytrace import Program, RaytracePass
 from nau_py.paths import resolve as resolve_path
-from nau_py.raytrace.ptx.compile import compile_all
+from nau_py.raytrace.ptx.compile import CALLABLE, compile_all
 from nau_py.raytrace.ptx.optix6 import Layout, is_old
 from nau_py.raytrace.ptx.reader import Function, Module, PtxError, read_ptx
 
@@ -128,11 +128,8 @@ class Programs:
             native.address(name)
             for path, native in self.natives.items()
             for name, function in self.modules[path].functions.items()
-            if function.body is not None and name.startswith(_CALLABLE)
+            if function.body is not None and name.startswith(CALLABLE)
         ]
-
-
-_CALLABLE = ("__direct_callable__", "__continuation_callable__")
 
 
 def module_faults(

@@ -16,6 +16,8 @@ from nau_py.raytrace.ptx.reader import Function, Instruction, Module, PtxError, 
 HANDLERS: dict[str, Handler] = ARITHMETIC | BITS | MEMORY
 PARAMETERS = "optixLaunchParams"
 """The variable that a launch fills."""
+CALLABLE = ("__direct_callable__", "__continuation_callable__")
+"""How names of callable programs begin."""
 _OVERFLOWS = "".join(
     f"declare {{{t}, i1}} @llvm.u{how}.with.overflow.{t}({t}, {t})\n"
     for t in ("i16", "i32", "i64")
@@ -110,7 +112,8 @@ def _function(
         else:
             _guarded(w, instruction, labels)
     w.emit("ret void")
-    linkage = "" if function.entry or function.visible else "internal "
+    by_name = function.entry or function.visible or function.name.startswith(CALLABLE)
+    linkage = "" if by_name else "internal "
     head = f'define {linkage}void @"{function.name}"({", ".join(takes)}) nounwind {{'
     entry = ['"entry":', *w.head, '  br label %"begin"', '"begin":']
     return "\n".join([head, *entry, *w.lines, "}"])

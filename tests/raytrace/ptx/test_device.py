@@ -1,0 +1,173 @@
+"""The device interface of OptiX 7 and 8 beyond what Nau's programs ask for. ``data/new.cu`` asks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from nau_py.raytrace.accel import Custom, build_groups
+from nau_py.raytrace.ptx.compile import compile_module
+from nau_py.raytrace.ptx.frame import FRAME_BYTES, PLACES, RECORD_HEADER
+from nau_py.raytrace.ptx.launch import (
+    TYPES,
+    Launch,
+    Launched,
+    block_of,
+    record_table,
+    run_launch,
+    set_program,
+)
+from nau_py.raytrace.ptx.native import Native
+from nau_py.raytrace.ptx.reader import read_ptx
+from nau_py.raytrace.ptx.records import DATA, Group, Scene, Surface
+
+COUNT = 33
+X = np.arange(COUNT) / 16 - 1
+"""Where the launch indices' rays meet the plane z = 0, at y = 0.25."""
+POSITIONS = np.array(
+    [(-0.5, -0.5, 0, 1), (0.5, -0.5, 0, 1), (0.5, 0.5, 0, 1), (-0.5, 0.5, 0, 1)], np.float32
+)
+TRIANGLES = np.array([(0, 1, 2), (2, 0, 3)], np.uint32)
+"""A square; the second triangle is wound so that rays along -z see its back."""
+INSIDE = np.abs(X) < 0.49
+FIRST = INSIDE & (X > 0.26)
+SECOND = INSIDE & (X < 0.24)
+Array = np.ndarray[Any, Any]
+
+
+@pytest.fixture(scope="module")
+def native() -> Native:
+    text = (Path(__file__).parent / "data" / "new.ptx").read_text()
+    return Native(compile_module(read_ptx(text)))
+
+
+def launch(
+    native: Native,
+    generate: str,
+    closest: str,
+    miss: str = "",
+    exception: str = "",
+    callables: tuple[str, ...] = (),
+) -> tuple[Array, Launched]:
+    """What the launch indices write, float32 (n, 4), for a square in the plane z = 0."""
+    scene = Scene([Group("m", {"position": POSITIONS}, TRIANGLES)])
+    hits = scene.records([[(native.address(closest), 0)]], [Surface()], ["position"])
+    return _run(native, generate, scene.handle, hits, miss, exception, callables)
+
+
+def _run(
+    native: Native,
+    generate: str,
+    handle: int,
+    hits: Array,
+    miss: str = "",
+    exception: str = "",
+    callables: tuple[str, ...] = (),
+) -> tuple[Array, Launched]:
+    misses, context = record_table(1, DATA.itemsize), record_table(1, 16)
+    set_program(misses[0], "closest", native.address(miss) if miss else 0)
+    out = np.zeros((COUNT, 4), np.float32)
+    parameters = np.array([out.ctypes.data, 1], np.uint64)
+    native.set_variable("optixLaunchParams", parameters.tobytes())
+    done = run_launch(
+        Launch(
+            (native, native.address(generate)),
+            handle,
+            hits,
+            misses,
+            context,
+            (COUNT, 1),
+            exception=native.address(exception) if exception else 0,
+            callables=np.array([native.address(c) for c in callables], np.uint64),
+        ),
+        [native],
+        threads=1,
+    )
+    return out, done
+
+
+def test_typed_payloads_of_32_words(native: Native) -> None:
+    """Words go down with the ray and come back; front and back faces are told apart."""
+    out, done = launch(native, "__raygen__typed", "__closesthit__typed", "__miss__typed")
+    np.testing.assert_array_equal(
+        out[FIRST], np.tile([100 + 254, 200, 300 + 19, 20], (FIRST.sum(), 1))
+    )
+    np.testing.assert_array_equal(
+        out[SECOND], np.tile([100 + 255, 201, 319, 20], (SECOND.sum(), 1))
+    )
+    beyond = np.abs(X) > 0.51
+    np.testing.assert_array_equal(out[beyond], np.tile([7, 200, 300, 20], (beyond.sum(), 1)))
+    assert done.thrown == 0
+
+
+def test_corners_and_attributes_of_triangles(native: Native) -> None:
+    """Barycentrics weigh the corners to where the ray is; they are the first two attributes."""
+    out, _ = launch(native, "__raygen__corners", "__closesthit__corners")
+    np.testing.assert_allclose(out[INSIDE][:, 0], X[INSIDE], atol=1e-6)
+    np.testing.assert_allclose(out[INSIDE][:, 1], 0.25, atol=1e-6)
+    np.testing.assert_array_equal(out[INSIDE][:, 2], 1)
+
+
+def test_exceptions_unwind_to_their_program(native: Native) -> None:
+    out, done = launch(
+        native, "__raygen__typed", "__closesthit__throws", exception="__exception__caught"
+    )
+    np.testing.assert_array_equal(out[FIRST], np.tile([-1, 42, 1000, 0], (FIRST.sum(), 1)))
+    np.testing.assert_array_equal(out[SECOND], np.tile([-1, 42, 1001, 0], (SECOND.sum(), 1)))
+    hit = np.flatnonzero(out[:, 0] == -1)
+    assert (done.thrown, done.first, done.code) == (len(hit), hit[0], 42)
+    without, done = launch(native, "__raygen__typed", "__closesthit__throws")
+    np.testing.assert_array_equal(without[hit], 0)  # their work ended there
+    assert done.thrown == len(hit)
+
+
+def test_callable_programs(native: Native) -> None:
+    names = ("__direct_callable__add", "__continuation_callable__times")
+    out, done = launch(
+        native, "__raygen__calls", "__closesthit__typed", "", "__exception__caught", names
+    )
+    x = np.arange(COUNT)
+    np.testing.assert_array_equal(out[x % 3 == 0][:, 0], x[x % 3 == 0] + 3)
+    np.testing.assert_array_equal(out[x % 3 == 1][:, 0], x[x % 3 == 1] * 3)
+    np.testing.assert_array_equal(out[x % 3 < 2][:, 1], x[x % 3 < 2] * 0.5)
+    np.testing.assert_array_equal(out[x % 3 == 2][:, 0], -1)
+    assert done.thrown == (x % 3 == 2).sum()
+
+
+def test_intersection_programs_report_kind_and_attributes(native: Native) -> None:
+    """A square of the program's own; the any-hit program lets its right half through, where a second
+    square behind it is hit."""
+    hits = record_table(1, DATA.itemsize)
+    for kind, name in (
+        ("closest", "__closesthit__square"),
+        ("any", "__anyhit__left"),
+        ("intersect", "__intersection__square"),
+    ):
+        set_program(hits[0], kind, native.address(name))
+    nothing = record_table(1, DATA.itemsize)
+    rays, mark = np.zeros(TYPES, np.uint64), np.zeros(1, np.int64)
+    described = Launch((native, 0), 0, hits, nothing, nothing, (1, 1))
+    block = block_of(described, rays, mark.ctypes.data)
+    frame = np.zeros(FRAME_BYTES, np.uint8)
+    for name, value in (
+        ("launch", block.ctypes.data),
+        ("record", hits.ctypes.data + RECORD_HEADER),
+    ):
+        at = PLACES[name][0]
+        frame[at : at + 8] = np.frombuffer(np.uint64(value).tobytes(), np.uint8)
+    user = np.array([native.address("box"), frame.ctypes.data], np.uint64)
+    places = (native.address("nau.bounds"), native.address("nau.user"))
+    handle, kept = build_groups([Custom(1, *places, user.ctypes.data)])
+    out, _ = _run(native, "__raygen__corners", handle, hits, "__miss__typed")
+    left = X[1:] <= 0  # the first ray passes along the box's side
+    np.testing.assert_array_equal(out[1:][left][:, 0], X[1:][left].astype(np.float32))
+    words = out[1:][left][:, 1].view(np.uint32)
+    np.testing.assert_array_equal(words, 9 + 100 * 11)
+    np.testing.assert_array_equal(out[1:][left][:, 2], 1)
+    right = (X > 0) & (X < 1)
+    np.testing.assert_array_equal(out[right][:, 0], 0)
+    np.testing.assert_array_equal(out[right][:, 2], 0)  # at another distance
+    assert kept is not None
