@@ -3,6 +3,7 @@
 ``python benchmarks/ptx.py NAU [RUNS]`` (a checkout of Nau3D/nau) launches the shipped PTX of
 ``optix07-ReflectionRefraction`` and traces by hand, without shading, the rays that make up nine
 tenths of its own: the primary ones, and those from their hits to the light. Same threads, same run.
+Then the selective demo: its programs of OptiX 3 to 6 against their Python twins, in turn.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from nau_py.raytrace.accel import Accelerator
 from nau_py.raytrace.geometry import gather
 
 TILE = 65536
+SELECTIVE = Path(__file__).parent.parent / "projects" / "selective"
 
 
 def raw_rate(
@@ -31,6 +33,26 @@ def raw_rate(
     with ThreadPoolExecutor(threads) as pool:
         list(pool.map(lambda p: accelerator.intersect(origin[p], direction[p]), parts))
     return len(origin) / (perf_counter() - begun)
+
+
+def twins(runs: int) -> None:
+    """Milliseconds of the selective demo's raytrace pass, compiled and in Python."""
+    options = nau_py.RunOptions(threads=2)
+    renderers = [
+        nau_py.Renderer(nau_py.load(SELECTIVE / name), options=options)
+        for name in ("optix.xml", "project.xml")
+    ]
+    for renderer in renderers:
+        renderer.render()
+    times: list[list[float]] = [[], []]
+    for _ in range(runs):
+        for renderer, measured in zip(renderers, times):
+            passes = renderer.again().report["frames"][0]["passes"]
+            stages = next(p["stages"] for p in passes if p["name"] == "trace")
+            measured.append(stages["trace"] + stages.get("shade", 0.0))
+    compiled, python = (statistics.median(measured) for measured in times)
+    print(f"selective, PTX of OptiX 3 to 6: {compiled:.0f} ms, its Python twin: {python:.0f} ms")
+    print(f"ratio {compiled / python:.2f}")
 
 
 def main() -> None:
@@ -71,6 +93,8 @@ def main() -> None:
     print(f"PTX, shaded: {ours:.1f} M rays/s ({min(rates) / 1e6:.1f} to {max(rates) / 1e6:.1f})")
     print(f"Embree alone: {theirs:.1f} M rays/s ({min(raw) / 1e6:.1f} to {max(raw) / 1e6:.1f})")
     print(f"ratio {ours / theirs:.2f}")
+    renderer.close()
+    twins(runs)
 
 
 if __name__ == "__main__":

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from nau_py.raytrace.ptx.function import Writer, is_float, is_signed, llvm
+from nau_py.raytrace.ptx.function import Writer, float_text, is_float, is_signed, llvm
 from nau_py.raytrace.ptx.reader import SIZES
+from nau_py.raytrace.ptx.rounding import directed, mode_of
 
 Handler = Callable[[Writer, list[str], tuple[str, ...]], None]
-_ROUNDED = {"rz", "rm", "rp"}
 _ORDERED = {"eq": "oeq", "ne": "one", "lt": "olt", "le": "ole", "gt": "ogt", "ge": "oge"}
 _ORDERED |= {"equ": "ueq", "neu": "une", "ltu": "ult", "leu": "ule", "gtu": "ugt", "geu": "uge"}
 _ORDERED |= {"num": "ord", "nan": "uno"}
@@ -25,10 +25,16 @@ def type_in(w: Writer, words: list[str]) -> str:
     return found
 
 
-def _nearest_only(w: Writer, words: list[str]) -> None:
-    wrong = _ROUNDED & set(words)
-    if wrong:
-        raise w.fail(f"rounding '.{min(wrong)}' of arithmetic is not supported, '.rn' is")
+def _rounded(w: Writer, words: list[str], type_: str, how: str, values: list[str]) -> str:
+    """An operation of floats, by the rounding that its opcode names."""
+    mode = mode_of(words)
+    if mode:
+        return directed(w, mode, type_, how, values)
+    t = llvm(type_)
+    if how in ("sqrt", "fma"):
+        listed = ", ".join(f"{t} {value}" for value in values)
+        return w.value(f"call {t} @llvm.{how}.{type_}({listed})")
+    return w.value(f"f{how} {t} {values[0]}, {values[1]}")
 
 
 def _saturated(w: Writer, words: list[str], value: str, type_: str) -> str:
@@ -41,20 +47,19 @@ def _saturated(w: Writer, words: list[str], value: str, type_: str) -> str:
     return w.value(f"call {t} @llvm.minnum.f{n}({t} {low}, {t} 1.0)")
 
 
-def _binary(float_: str, integer: str, signed: str | None = None) -> Handler:
+def _binary(integer: str) -> Handler:
     def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
         a, b = w.read(operands[1], type_), w.read(operands[2], type_)
         t = llvm(type_)
         if is_float(type_):
-            _nearest_only(w, words)
-            value = _saturated(w, words, w.value(f"{float_} {t} {a}, {b}"), type_)
+            value = _saturated(w, words, _rounded(w, words, type_, integer, [a, b]), type_)
         elif "cc" in words:
             value = _with_carry(w, integer, t, a, b)
         elif "sat" in words:
             value = w.value(f"call {t} @llvm.s{integer}.sat.{t}({t} {a}, {t} {b})")
         else:
-            value = w.value(f"{signed if signed and is_signed(type_) else integer} {t} {a}, {b}")
+            value = w.value(f"{integer} {t} {a}, {b}")
         w.write(operands[0], value, type_)
 
     return handle
@@ -116,8 +121,7 @@ def mul(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
     if is_float(type_):
-        _nearest_only(w, words)
-        product = w.value(f"fmul {llvm(type_)} {a}, {b}")
+        product = _rounded(w, words, type_, "mul", [a, b])
         w.write(operands[0], _saturated(w, words, product, type_), type_)
         return
     w.write(operands[0], *_product(w, words, type_, a, b))
@@ -128,9 +132,7 @@ def mad(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
     if is_float(type_):
-        _nearest_only(w, words)
-        c, t = w.read(operands[3], type_), llvm(type_)
-        value = w.value(f"call {t} @llvm.fma.{type_}({t} {a}, {t} {b}, {t} {c})")
+        value = _rounded(w, words, type_, "fma", [a, b, w.read(operands[3], type_)])
         w.write(operands[0], _saturated(w, words, value, type_), type_)
         return
     product, wide = _product(w, words, type_, a, b)
@@ -153,12 +155,22 @@ def madc(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
 def div(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
-    t = llvm(type_)
     if is_float(type_):
-        _nearest_only(w, words)
-        w.write(operands[0], w.value(f"fdiv {t} {a}, {b}"), type_)
+        value = _rounded(w, words, type_, "div", [a, b])
+        w.write(operands[0], _of_huge(w, a, b, value) if "approx" in words else value, type_)
         return
     w.write(operands[0], _divided(w, "div", type_, a, b), type_)
+
+
+def _of_huge(w: Writer, a: str, b: str, value: str) -> str:
+    """``div.approx`` by more than 2**126: the reciprocal is 0 (9.7.3.8)."""
+    size = w.value(f"call float @llvm.fabs.f32(float {b})")
+    huge = w.value(f"fcmp ogt float {size}, {float_text(2.0**126, 'f32')}")
+    finite = w.value(f"fcmp olt float {size}, {float_text(float('inf'), 'f32')}")
+    zero = w.value(f"call float @llvm.copysign.f32(float 0.0, float {b})")
+    product = w.value(f"fmul float {a}, {zero}")
+    both = w.value(f"and i1 {huge}, {finite}")
+    return w.value(f"select i1 {both}, float {product}, float {value}")
 
 
 def rem(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
@@ -186,15 +198,26 @@ def _divided(w: Writer, how: str, type_: str, a: str, b: str) -> str:
     return w.value(f"select i1 {zero}, {t} -1, {t} {value}")
 
 
+def _with_zero(w: Writer, how: str, type_: str, a: str, b: str, plain: str) -> str:
+    """The lesser or greater of equal numbers: by their bits, for zeros have a sign."""
+    t, bits = llvm(type_), f"i{8 * SIZES[type_]}"
+    same = w.value(f"fcmp oeq {t} {a}, {b}")
+    x, y = (w.value(f"bitcast {t} {value} to {bits}") for value in (a, b))
+    both = w.value(f"{'or' if how == 'min' else 'and'} {bits} {x}, {y}")
+    chosen = w.value(f"bitcast {bits} {both} to {t}")
+    return w.value(f"select i1 {same}, {t} {chosen}, {t} {plain}")
+
+
 def _extreme(how: str) -> Handler:
     def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
         a, b = w.read(operands[1], type_), w.read(operands[2], type_)
         t = llvm(type_)
-        if is_float(type_):  # of a NaN and a number, the number
-            name = f"@llvm.{how}num.{type_}"
-        else:
-            name = f"@llvm.{'s' if is_signed(type_) else 'u'}{how}.{t}"
+        if is_float(type_):  # of a NaN and a number, the number; -0 is less than +0
+            plain = w.value(f"call {t} @llvm.{how}num.{type_}({t} {a}, {t} {b})")
+            w.write(operands[0], _with_zero(w, how, type_, a, b, plain), type_)
+            return
+        name = f"@llvm.{'s' if is_signed(type_) else 'u'}{how}.{t}"
         w.write(operands[0], w.value(f"call {t} {name}({t} {a}, {t} {b})"), type_)
 
     return handle
@@ -219,7 +242,6 @@ def _function(name: str) -> Handler:
 
     def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
-        _nearest_only(w, words)
         a, t = w.read(operands[1], type_), llvm(type_)
         w.write(operands[0], w.value(f"call {t} @llvm.{name}.{type_}({t} {a})"), type_)
 
@@ -228,9 +250,34 @@ def _function(name: str) -> Handler:
 
 def reciprocal(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
-    _nearest_only(w, words)
+    a = w.read(operands[1], type_)
+    w.write(operands[0], _rounded(w, words, type_, "div", ["1.0", a]), type_)
+
+
+def root(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    type_ = type_in(w, words)
+    w.write(operands[0], _rounded(w, words, type_, "sqrt", [w.read(operands[1], type_)]), type_)
+
+
+def copysign(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    """The second with the sign of the first (9.7.3.5)."""
+    type_ = type_in(w, words)
+    a, b, t = w.read(operands[1], type_), w.read(operands[2], type_), llvm(type_)
+    call = f"call {t} @llvm.copysign.{type_}({t} {b}, {t} {a})"
+    w.write(operands[0], w.value(call), type_)
+
+
+def testp(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    """What kind of number a float is."""
+    type_ = type_in(w, words)
     a, t = w.read(operands[1], type_), llvm(type_)
-    w.write(operands[0], w.value(f"fdiv {t} 1.0, {a}"), type_)
+    kinds = {"notanumber": 3, "number": 1020, "infinite": 516, "finite": 504, "normal": 264,
+             "subnormal": 144}  # fmt: skip
+    mask = next((kinds[word] for word in words if word in kinds), None)
+    if mask is None:
+        raise w.fail(f"'testp.{'.'.join(words)}' asks for no known kind")
+    call = f"call i1 @llvm.is.fpclass.{type_}({t} {a}, i32 {mask})"
+    w.write(operands[0], w.value(call), "pred")
 
 
 def root_reciprocal(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
@@ -348,8 +395,8 @@ def _shift(left: bool) -> Handler:
 
 
 ARITHMETIC: dict[str, Handler] = {
-    "add": _binary("fadd", "add"),
-    "sub": _binary("fsub", "sub"),
+    "add": _binary("add"),
+    "sub": _binary("sub"),
     "addc": _carried("add"),
     "subc": _carried("sub"),
     "mul": mul,
@@ -362,7 +409,9 @@ ARITHMETIC: dict[str, Handler] = {
     "max": _extreme("max"),
     "neg": negate,
     "abs": absolute,
-    "sqrt": _function("sqrt"),
+    "sqrt": root,
+    "copysign": copysign,
+    "testp": testp,
     "sin": _function("sin"),
     "cos": _function("cos"),
     "lg2": _function("log2"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from nau_py.raytrace.ptx.arithmetic import Handler, type_in
 from nau_py.raytrace.ptx.function import Writer, is_float, is_signed, llvm
 from nau_py.raytrace.ptx.reader import SIZES
+from nau_py.raytrace.ptx.rounding import mode_of, narrowed, of_integer
 
 _ROUND = {"rni": "rint", "rzi": "trunc", "rmi": "floor", "rpi": "ceil"}
 
@@ -136,34 +137,55 @@ def mov(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
 def cvt(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     """Conversions (9.7.9.21): ``cvt.rounding.to.from``."""
     types = [word for word in words if word in SIZES]
-    if len(types) != 2 or "f16" in types:
+    if len(types) != 2:
         raise w.fail("only conversions between two of the plain types are supported")
+    if "f16" in types:
+        _half(w, words, types, operands)
+        return
     to, source = types
     value = w.read(operands[1], source)
     rounding = next((word for word in words if word in _ROUND), None)
+    mode = mode_of(words)
     if is_float(source) and is_float(to):
-        made = _between_floats(w, value, source, to, rounding, words)
+        made = _between_floats(w, value, source, to, rounding, mode, words)
     elif is_float(source):
         made = _to_integer(w, value, source, to, rounding or "rzi")
     elif is_float(to):
-        made = w.value(
-            f"{'s' if is_signed(source) else 'u'}itofp {llvm(source)} {value} to {llvm(to)}"
-        )
+        signed, whole = is_signed(source), llvm(source)
+        if mode:
+            made = of_integer(w, mode, value, whole, signed, to)
+        else:
+            made = w.value(f"{'s' if signed else 'u'}itofp {whole} {value} to {llvm(to)}")
         made = _clamped(w, made, to) if "sat" in words else made
     else:
         made = _between_integers(w, value, source, to, "sat" in words)
     w.write(operands[0], made, to)
 
 
+def _half(w: Writer, words: list[str], types: list[str], operands: tuple[str, ...]) -> None:
+    """To and from half floats, which are bits in registers of 16."""
+    to, source = types
+    if not (is_float(to) or is_float(source)) or mode_of(words):
+        raise w.fail("half floats are converted to and from floats only, by the nearest")
+    if source == "f16":
+        half = w.value(f"bitcast i16 {w.read(operands[1], 'b16')} to half")
+        w.write(operands[0], w.value(f"fpext half {half} to {llvm(to)}"), to)
+        return
+    value = w.read(operands[1], source)
+    value = _clamped(w, value, source) if "sat" in words else value
+    half = w.value(f"fptrunc {llvm(source)} {value} to half")
+    w.write(operands[0], w.value(f"bitcast half {half} to i16"), "b16")
+
+
 def _between_floats(
-    w: Writer, value: str, source: str, to: str, rounding: str | None, words: list[str]
+    w: Writer, value: str, source: str, to: str, rounding: str | None, mode: str, words: list[str]
 ) -> str:
-    if {"rz", "rm", "rp"} & set(words):
-        raise w.fail("only rounding to nearest is supported between floats")
     if rounding:
         t = llvm(source)
         value = w.value(f"call {t} @llvm.{_ROUND[rounding]}.{source}({t} {value})")
-    if source != to:
+    if SIZES[to] < SIZES[source] and mode:
+        value = narrowed(w, mode, value)
+    elif source != to:
         how = "fpext" if SIZES[to] > SIZES[source] else "fptrunc"
         value = w.value(f"{how} {llvm(source)} {value} to {llvm(to)}")
     return _clamped(w, value, to) if "sat" in words else value

@@ -10,10 +10,11 @@ from nau_py.raytrace.ptx.bits import BITS
 from nau_py.raytrace.ptx.data import global_text
 from nau_py.raytrace.ptx.frame import unwind
 from nau_py.raytrace.ptx.function import FRAME, Writer, split
+from nau_py.raytrace.ptx.integer import INTEGER
 from nau_py.raytrace.ptx.memory import MEMORY
-from nau_py.raytrace.ptx.reader import Function, Instruction, Module, PtxError, Variable
+from nau_py.raytrace.ptx.reader import FLUSHED, Function, Instruction, Module, PtxError, Variable
 
-HANDLERS: dict[str, Handler] = ARITHMETIC | BITS | MEMORY
+HANDLERS: dict[str, Handler] = ARITHMETIC | BITS | INTEGER | MEMORY
 PARAMETERS = "optixLaunchParams"
 """The variable that a launch fills."""
 CALLABLE = ("__direct_callable__", "__continuation_callable__")
@@ -67,7 +68,7 @@ def compile_all(module: Module, layout: optix6.Layout | None = None) -> tuple[st
     parts = [_RUNTIME]
     for variable in own.values():
         try:
-            parts.append(global_text(variable))
+            parts.append(global_text(variable, address))
         except PtxError as error:
             errors.append(error)
     for function in module.functions.values():
@@ -157,15 +158,30 @@ def _plain(
     operands = instruction.operands
     if base == "bra":
         w.jump(f'br label %"L.{_label(w, instruction, labels)}"')
+    elif base == "brx":
+        _choose(w, operands, labels)
     elif base in ("ret", "exit") or base == "trap":
         w.jump("ret void")
     elif base == "call" or base in HANDLERS:
+        w.soft = "ftz" in words and not (base in FLUSHED and w.module.flushes)
         try:
             _call(w, operands) if base == "call" else HANDLERS[base](w, words, operands)
         except IndexError:
             raise w.fail(f"'{instruction.opcode}' has too few operands") from None
+        w.soft = False
     else:
         raise w.fail(f"instruction '{instruction.opcode}' is not supported")
+
+
+def _choose(w: Writer, operands: tuple[str, ...], labels: set[str]) -> None:
+    """``brx.idx index, list``: to one of the labels of a list."""
+    name = operands[1] if len(operands) > 1 else ""
+    targets = w.function.tables.get(name)
+    if not targets or not set(targets) <= labels:
+        raise w.fail(f"there is no list of labels '{name}'")
+    index = w.read(operands[0], "u32")
+    cases = " ".join(f'i32 {i}, label %"L.{t}"' for i, t in enumerate(targets))
+    w.jump(f'switch i32 {index}, label %"L.{targets[0]}" [{cases}]')
 
 
 def _call(w: Writer, operands: tuple[str, ...]) -> None:
@@ -191,8 +207,8 @@ def _call(w: Writer, operands: tuple[str, ...]) -> None:
     elif target.body is None:
         if name != "vprintf":
             raise w.fail(f"procedure '{name}' is declared, but is not there")
-        form, values = (_parameter(w, operand, name) for operand in takes[:2])
-        loaded = [w.value(f"load i64, ptr {p}, align 1") for p in (form, values)]
+        places = (_parameter(w, takes[0], name), _parameter(w, takes[1], name))
+        loaded = [w.value(f"load i64, ptr {p}, align 1") for p in places]
         w.emit(f"call void @nau.printf(ptr {FRAME}, i64 {loaded[0]}, i64 {loaded[1]})")
     elif len(returns) + len(takes) != len(target.returns) + len(target.takes):
         raise w.fail(f"'{name}' takes another number of arguments")

@@ -73,6 +73,8 @@ class Writer:
     places: dict[str, str] = field(default_factory=dict)
     """Variables of the function: name to the LLVM value that is their address."""
     line: int = 0
+    soft: bool = False
+    """Whether the instruction treats denormals as zero, and the processor does not do it."""
     _count: int = 0
     _open: bool = True
 
@@ -165,7 +167,8 @@ class Writer:
         held = self.register(operand)
         if held is not None:
             loaded = self.value(f'load {llvm(held)}, ptr %"r.{operand}"')
-            return self.fit(loaded, held, type_)
+            fitted = self.fit(loaded, held, type_)
+            return self.flushed(fitted) if self.soft and type_ == "f32" else fitted
         return self._constant(operand, type_)
 
     def _constant(self, operand: str, type_: str) -> str:
@@ -232,11 +235,22 @@ class Writer:
         held = self.register(operand)
         if held is None:
             raise self.fail(f"'{operand}' is no register")
+        if self.soft and type_ == "f32":
+            value = self.flushed(value)
         if held != type_ and llvm(held) != llvm(type_):
             as_sign = "s" if is_signed(type_) else "b"
             wide = held if is_float(held) or held == "pred" else f"{as_sign}{8 * SIZES[held]}"
             value = self.fit(value, type_, wide)
         self.emit(f'store {llvm(held)} {value}, ptr %"r.{operand}"')
+
+    def flushed(self, value: str) -> str:
+        """A float32, a denormal as zero of its sign."""
+        size = self.value(f"bitcast float {value} to i32")
+        exponent = self.value(f"and i32 {size}, {0x7F800000}")
+        small = self.value(f"icmp eq i32 {exponent}, 0")
+        sign = self.value(f"and i32 {size}, {-0x80000000}")
+        kept = self.value(f"select i1 {small}, i32 {sign}, i32 {size}")
+        return self.value(f"bitcast i32 {kept} to float")
 
     def pointer(self, operand: str) -> str:
         """The pointer of ``[base + offset]``."""

@@ -135,8 +135,8 @@ def call(w: Writer, name: str, returns: list[str], takes: list[str]) -> None:
     elif _REPORT.match(short):
         _report(w, returns, takes)
     elif _THROW.match(short):
-        code, *details = [w.read(operand, "u32") for operand in takes]
-        throw(w, code, details[:DETAILS])
+        details = [w.read(operand, "u32") for operand in takes[1:]]
+        throw(w, w.read(takes[0], "u32"), details[:DETAILS])
     elif found := _DETAIL.match(short):
         w.write(returns[0], *launched(w, f"detail_{found[1]}"))
     elif match := _VERTICES.match(short):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 SPACES = ("param", "local", "const", "global", "shared", "reg")
 SIZES = {
@@ -12,6 +13,8 @@ SIZES = {
     "texref": 8, "samplerref": 8, "surfref": 8,
 }  # fmt: skip
 """Bytes of each type (5.2)."""
+FLUSHED = ("add", "sub", "mul", "mad", "fma", "div", "rcp", "rsqrt", "sqrt", "setp", "set")
+"""Instructions that the processor's own mode makes treat denormals as zero (``.ftz``)."""
 _SKIPPED = re.compile(r'"[^"\n]*"|//[^\n]*|/\*.*?(?:\*/|\Z)', re.DOTALL)
 _LABEL = re.compile(r"([A-Za-z$_%][\w$]*)\s*:(?!:)")
 _DIGITS = 8
@@ -86,20 +89,27 @@ class Function:
     line: int
     variables: list[Variable] = field(default_factory=list)
     body: list[Instruction] | None = None
+    tables: dict[str, list[str]] = field(default_factory=dict)
+    """Lists of labels that ``brx.idx`` chooses from, by name."""
 
 
-@dataclass(slots=True)
+@dataclass
 class Module:
     """A module: its variables outside of functions, and its functions by name."""
 
     variables: list[Variable] = field(default_factory=list)
     functions: dict[str, Function] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def flushes(self) -> bool:
-        """Whether its floats treat denormals as zero: nvcc says so everywhere, or nowhere."""
-        bodies = (function.body or [] for function in self.functions.values())
-        return any(".ftz" in instruction.opcode for body in bodies for instruction in body)
+        """Whether its floats treat denormals as zero: most of them, for library functions may do
+        so inside of modules that do not."""
+        votes = 0
+        for function in self.functions.values():
+            for instruction in function.body or []:
+                if instruction.opcode.split(".")[0] in FLUSHED and ".f32" in instruction.opcode:
+                    votes += 1 if ".ftz" in instruction.opcode else -1
+        return votes > 0
 
 
 def _without_comments(text: str) -> str:
@@ -109,6 +119,53 @@ def _without_comments(text: str) -> str:
         return found[0] if found[0].startswith('"') else re.sub(r"[^\n]", " ", found[0])
 
     return _SKIPPED.sub(blank, text)
+
+
+_TOKEN = re.compile(r"[%A-Za-z$_][\w$]*")
+_NUMBERED = re.compile(r"(.*?)(\d+)$")
+
+
+class _Scopes:
+    """Blocks inside of a function: what they declare is theirs, whatever else has that name (5.4).
+    Their variables get names of their own, so that a function has one list of them."""
+
+    def __init__(self) -> None:
+        self._open: list[tuple[int, dict[str, str], set[str]]] = []
+        self._count = 0
+
+    def enter(self) -> None:
+        self._count += 1
+        self._open.append((self._count, {}, set()))
+
+    def leave(self) -> None:
+        if self._open:
+            self._open.pop()
+
+    def declared(self, variable: Variable) -> Variable:
+        if len(self._open) < 2:  # of the function itself
+            return variable
+        number, names, families = self._open[-1]
+        if variable.count is not None:
+            families.add(variable.name)
+            return replace(variable, name=f"{variable.name}.s{number}.")
+        names[variable.name] = f"{variable.name}.s{number}"
+        return replace(variable, name=names[variable.name])
+
+    def _name(self, found: re.Match[str]) -> str:
+        word = found[0]
+        for number, names, families in reversed(self._open[1:]):
+            if word in names:
+                return names[word]
+            numbered = _NUMBERED.match(word) if families else None
+            if numbered and numbered[1] in families:
+                return f"{numbered[1]}.s{number}.{numbered[2]}"
+        return word
+
+    def renamed(self, made: Instruction) -> Instruction:
+        if not any(names or families for _, names, families in self._open[1:]):
+            return made
+        operands = tuple(_TOKEN.sub(self._name, operand) for operand in made.operands)
+        return replace(made, operands=operands, guard=_TOKEN.sub(self._name, made.guard))
 
 
 class _Reader:
@@ -198,12 +255,14 @@ class _Reader:
     def body(self, made: Function) -> None:
         made.body = []
         depth = 0
+        scopes = _Scopes()
         while True:
             char = self.skip()
             if char == "":
                 raise self.fail(f"function '{made.name}' is not closed: no '}}' follows")
             if char in "{}":
                 depth += 1 if char == "{" else -1
+                scopes.enter() if char == "{" else scopes.leave()
                 self.at += 1
                 if depth == 0:
                     return
@@ -218,11 +277,14 @@ class _Reader:
                 self.directive()
                 continue
             text = self.statement()
-            if text.startswith("."):
+            if text.startswith(".branchtargets"):
+                name = made.body[-1].label if made.body else ""
+                made.tables[name] = _operands(text.removeprefix(".branchtargets"), line)
+            elif text.startswith("."):
                 if not _IGNORED.match(text):
-                    made.variables += _variables(text, line)
+                    made.variables += [scopes.declared(v) for v in _variables(text, line)]
             elif text:
-                made.body.append(_instruction(text, line))
+                made.body.append(scopes.renamed(_instruction(text, line)))
 
 
 def _parameters(text: str | None, line: int) -> list[Variable]:

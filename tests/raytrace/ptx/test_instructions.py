@@ -399,3 +399,106 @@ def test_memory_of_all_widths() -> None:
     assert run("cvt.s32.s16 %d, %a0;", [("s8", small)], "s32").tolist() == small.tolist()
     found = run("st.u32 [%at1], %a0; ld.u32 %d, [%at1];", [("u64", M.view(np.uint64))], "u32")
     assert found.tolist() == wrapped(M.tolist(), 32, False)
+
+
+def test_blocks_have_registers_of_their_own() -> None:
+    """What a block declares shadows what is outside, single registers and numbered ones."""
+    body = (
+        "mov.u32 %i1, 5; mov.u32 %i2, 7;\n"
+        "{ .reg .b32 %i1; .reg .b64 %l<3>; mov.u32 %i1, 9; mov.u64 %l2, 1; add.u32 %i2, %i1, %i2; }\n"
+        "{ .reg .b32 %i<4>; mov.u32 %i1, 100; { .reg .b32 %i1; mov.u32 %i1, 1000; } "
+        "add.u32 %d, %a0, %i1; }\n"
+        "add.u32 %d, %d, %i1; add.u32 %d, %d, %i2;"
+    )
+    np.testing.assert_array_equal(run(body, {"u32": U}, "u32"), U + np.uint32(100 + 5 + 16))
+
+
+def test_parameters_of_calls_are_as_wide_as_their_block_says() -> None:
+    """The name of a parameter is used again, wider: nothing beside it is written."""
+    body = (
+        "{ .param .b32 param0; st.param.b32 [param0], %a0; ld.param.b32 %i1, [param0]; }\n"
+        "{ .param .align 8 .b8 param0[16]; mov.u64 %l1, 77; st.param.v2.b64 [param0], {%l1, %l1};"
+        " ld.param.b64 %l2, [param0+8]; }\n"
+        "cvt.u32.u64 %i2, %l2; add.u32 %d, %i1, %i2;"
+    )
+    np.testing.assert_array_equal(run(body, {"u32": U}, "u32"), U + np.uint32(77))
+
+
+def test_branches_by_a_list_of_labels() -> None:
+    body = (
+        "and.b32 %i1, %a0, 3;\n brx.idx %i1, LIST;\nLIST: .branchtargets A, B, C, A;\n"
+        "A: mov.u32 %d, 10; bra END;\nB: mov.u32 %d, 20; bra END;\nC: mov.u32 %d, 30;\nEND:"
+    )
+    wanted = np.array([10, 20, 30, 10], np.uint32)[U & 3]
+    np.testing.assert_array_equal(run(body, {"u32": U}, "u32"), wanted)
+
+
+@pytest.mark.parametrize("table", [0x00, 0xFF, 0xCA, 0x96, 0xE8, 0x01])
+def test_logic_by_a_table(table: int) -> None:
+    """Bit k of the result is bit ``4 a + 2 b + c`` of the table (9.7.8.6)."""
+    third = U ^ (V << 3)
+    found = run(
+        f"lop3.b32 %d, %a0, %a1, %a2, {table};", [("u32", U), ("u32", V), ("u32", third)], "u32"
+    )
+    wanted = np.zeros_like(U)
+    for bit in range(32):
+        a, b, c = (x >> np.uint32(bit) & 1 for x in (U, V, third))
+        wanted |= (np.uint32(table) >> (4 * a + 2 * b + c) & 1) << np.uint32(bit)
+    np.testing.assert_array_equal(found, wanted)
+
+
+def test_dot_products_and_short_products() -> None:
+    x = P.astype("<i4").view(np.int16).reshape(-1, 2).astype(np.int64)
+    y = Q.astype("<i4").view(np.uint8).reshape(-1, 4).astype(np.int64)
+    wanted = (x * y[:, 2:]).sum(axis=1) + 5
+    found = run("dp2a.hi.s32.u32 %d, %a0, %a1, 5;", [("s32", P), ("s32", Q)], "s32")
+    np.testing.assert_array_equal(found, wanted.astype(np.int32))
+    low = [(v.astype(np.int64) << 40) >> 40 for v in (P, Q)]
+    found = run("mad24.lo.s32 %d, %a0, %a1, 7;", [("s32", P), ("s32", Q)], "s32")
+    np.testing.assert_array_equal(found, (low[0] * low[1] + 7).astype(np.int32))
+    found = run("mul24.hi.s32 %d, %a0, %a1;", [("s32", P), ("s32", Q)], "s32")
+    np.testing.assert_array_equal(found, (low[0] * low[1] >> 16).astype(np.int32))
+
+
+@pytest.mark.parametrize(
+    "kind, wanted",
+    [
+        ("finite", np.isfinite(F)),
+        ("infinite", np.isinf(F)),
+        ("number", ~np.isnan(F)),
+        ("notanumber", np.isnan(F)),
+        ("normal", np.isfinite(F) & (np.abs(F) >= np.finfo(np.float32).tiny)),
+        ("subnormal", (F != 0) & (np.abs(F) < np.finfo(np.float32).tiny)),
+    ],
+)
+def test_kinds_of_numbers(kind: str, wanted: Array) -> None:
+    found = run(f"testp.{kind}.f32 %p1, %a0; selp.u32 %d, 1, 0, %p1;", {"f32": F}, "u32")
+    np.testing.assert_array_equal(found, wanted.astype(np.uint32))
+
+
+def test_atomic_operations_give_what_was_there() -> None:
+    """On memory of each launch index: its output."""
+    body = (
+        "st.global.u32 [%at1], %a0; atom.global.inc.u32 %i1, [%at1], 7; ld.global.u32 %i2, [%at1];\n"
+        "red.global.max.s32 [%at1], -3; atom.global.cas.b32 %i3, [%at1], %i2, 99;\n"
+        "sub.u32 %d, %i2, %i1;"
+    )
+    found = run(body, {"u32": U}, "u32")
+    wanted = np.where(U >= 7, np.uint32(0), U + np.uint32(1)) - U
+    np.testing.assert_array_equal(found, wanted)
+
+
+@pytest.mark.parametrize("mode", ["rz", "rm", "rp"])
+def test_doubles_become_floats_by_direction(mode: str) -> None:
+    values = np.concatenate([D, np.array([1 + 2.0**-40, -1 - 2.0**-40, 1e39, -1e39, 2.0**-200])])
+    found = run(f"cvt.{mode}.f32.f64 %d, %a0;", {"f64": values}, "f32").astype(np.float64)
+    finite = np.isfinite(values)
+    if mode == "rp":
+        assert (found[finite] >= values[finite]).all()
+    elif mode == "rm":
+        assert (found[finite] <= values[finite]).all()
+    else:
+        assert (np.abs(found[finite]) <= np.abs(values[finite])).all()
+    near = quiet(lambda: values.astype(np.float32))
+    steps = found[finite].astype(np.float32).view(np.int32).astype(np.int64)
+    assert (np.abs(steps - near[finite].view(np.int32)) <= 1).all()

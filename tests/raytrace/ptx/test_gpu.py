@@ -1,0 +1,71 @@
+"""Ordinary arithmetic as nvcc compiles it, against what an NVIDIA H200 computed from the same PTX.
+
+``data/instructions.cu`` has a kernel an expression; ``on_gpu.py`` ran them and left ``h200.npz``.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from nau_py.raytrace.ptx.compile import compile_module
+from nau_py.raytrace.ptx.launch import Launch, record_table, run_launch
+from nau_py.raytrace.ptx.native import Native
+from nau_py.raytrace.ptx.reader import Module, read_ptx
+from tests.raytrace.ptx.on_gpu import COUNT, ORDER, OUTPUTS, inputs
+
+DATA = Path(__file__).parent / "data"
+MODULE = read_ptx((DATA / "instructions.ptx").read_text())
+NAMES = [function.name for function in MODULE.functions.values() if function.entry]
+APPROXIMATE = (
+    "sinh", "exp2", "rsqrt", "tanh", "tan", "asin", "acos", "atan", "exp", "cbrt", "cosh", "erf",
+    "lgamma", "tgamma",
+)  # fmt: skip
+"""Functions over ``ex2.approx`` and the like, which are exact here: a few units in the last place."""
+ULPS = 3
+Array = np.ndarray[Any, Any]
+
+
+@pytest.fixture(scope="module")
+def module() -> tuple[Module, Native]:
+    return MODULE, Native(compile_module(MODULE))
+
+
+@pytest.fixture(scope="module")
+def card() -> dict[str, Array]:
+    with np.load(DATA / "h200.npz") as found:
+        return dict(found)
+
+
+def test_all_kernels_ran_on_the_card(card: dict[str, Array]) -> None:
+    assert set(NAMES) == set(card)
+    assert len(NAMES) > 150
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_as_on_the_card(module: tuple[Module, Native], card: dict[str, Array], name: str) -> None:
+    """To the bit, but for approximate functions; NaN where the card has NaN."""
+    text, native = module
+    given = inputs()
+    written = {letter: np.zeros(COUNT, type_) for letter, type_ in OUTPUTS.items()}
+    places = np.array([(given | written)[m].ctypes.data for m in ORDER], np.uint64)
+    native.set_variable("optixLaunchParams", places.tobytes())
+    none = record_table(1, 16)
+    generate = (native, native.address(name))
+    launch = Launch(generate, 0, none, none, none, (COUNT, 1), flush=text.flushes)
+    run_launch(launch, [native], threads=1)
+    found, wanted = written[name[0]], card[name]
+    if name[2:] not in APPROXIMATE:
+        np.testing.assert_array_equal(found, wanted)
+        if found.dtype.kind == "f":
+            number = ~np.isnan(wanted)
+            np.testing.assert_array_equal(np.signbit(found[number]), np.signbit(wanted[number]))
+        return
+    assert (np.isnan(found) == np.isnan(wanted)).all()
+    finite = np.isfinite(wanted)
+    np.testing.assert_array_equal(found[np.isinf(wanted)], wanted[np.isinf(wanted)])
+    unit = np.spacing(np.maximum(np.abs(wanted[finite]), np.finfo(wanted.dtype).tiny))
+    assert (np.abs(found[finite] - wanted[finite]) <= ULPS * unit).all()
