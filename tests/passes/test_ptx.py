@@ -208,3 +208,73 @@ def test_the_guarded_run_is_the_run(room: Folder) -> None:
     assert done.returncode == 0, done.stderr
     image = np.asarray(Image.open(room.path / "x.png"))
     assert image[24, 32].tolist() == [204, 102, 51]
+
+
+def added(proc: str, body: str) -> str:
+    """The room's module with one more program."""
+    head = f".visible .entry {proc}()\n{{\n\t.reg .b32 %r<9>;\n\t.reg .b64 %rd<9>;\n"
+    return DATA.read_text() + head + "\t.reg .f32 %f<9>;\n" + body + "\tret;\n}\n"
+
+
+def only(room: Folder, rule: str) -> list[str]:
+    """Messages of the findings, which all are of one rule."""
+    found = nau_py.lint(room.load())
+    assert {d.rule for d in found} == {rule}, found
+    assert all(d.severity == "warning" for d in found)
+    return [d.message for d in found]
+
+
+def test_records_are_as_long_as_they_are(room: Folder) -> None:
+    """Byte 112 is beyond; of a record's address, offsets are followed through moves and sums."""
+    body = (
+        "\tcall (%rd1), _optix_get_sbt_data_ptr_64, ();\n\tcvta.to.global.u64 %rd2, %rd1;\n"
+        "\tadd.s64 %rd3, %rd2, 96;\n\tld.global.v2.u32 {%r1, %r2}, [%rd3+12];\n"
+    )
+    room.write("room.ptx", added("__closesthit__far", body))
+    room.write("project.xml", PROJECT.replace("__closesthit__diffuse", "__closesthit__far"))
+    assert only(room, "T020") == [
+        "pass 'trace': program '__closesthit__far' of 'room.ptx' reads up to byte 116 of its record, "
+        "which has 112"
+    ]
+    room.write("room.ptx", added("__closesthit__far", body.replace("+12", "+8")))
+    assert nau_py.lint(room.load()) == []
+
+
+def test_payloads_are_as_long_as_they_were_sent(room: Folder) -> None:
+    body = "\tmov.u32 %r1, 5;\n\tcall _optix_set_payload_5, (%r1);\n"
+    room.write("room.ptx", added("__closesthit__wide", body))
+    room.write("project.xml", PROJECT.replace("__closesthit__diffuse", "__closesthit__wide"))
+    (said,) = only(room, "T021")
+    assert said == (
+        "pass 'trace': program '__closesthit__wide' of 'room.ptx' uses word 5 of the payload, rays "
+        "are sent with 2"
+    )
+
+
+def test_entries_are_whole(room: Folder) -> None:
+    """What Nau's records would be out of step with, nau_py says, and keeps in step."""
+    miss = '<rtProgram type="MISS" file="room.ptx" proc="__miss__blue" />\n            </rayType>\n'
+    end = "          </rtMap>"
+    assert f"{miss}{end}" in PROJECT
+    room.write("project.xml", PROJECT.replace(f"{miss}{end}", f"</rayType>\n{end}"))
+    (said,) = only(room, "T022")
+    assert said.startswith(
+        "pass 'trace': material 'Holed*' has no miss program of ray type 'Radiance': where its"
+    )
+    two = '<rayType name="Radiance" /><rayType name="Shadow" /></rtRayTypes>'
+    room.write("project.xml", PROJECT.replace('<rayType name="Radiance" /></rtRayTypes>', two))
+    assert only(room, "T022")[0].startswith(
+        "pass 'trace': material 'Holed*' has no entry for ray type 'Shadow': such rays pass nothing"
+    )
+    image = nau_py.Renderer(room.load()).render().targets["L::out"]
+    assert image[24, 32].tolist()[:3] == [204, 102, 51]
+
+
+def test_parameters_lie_where_compilers_look(room: Folder) -> None:
+    block = (
+        '<rtGlobalParams><param name="a" type="RENDERER" context="CURRENT" component="TIMER" />'
+        '<param name="b" type="TEXTURE" context="L::out" component="ID" /></rtGlobalParams>'
+    )
+    room.write("project.xml", PROJECT.replace("<rtEntryPoint>", f"{block}<rtEntryPoint>"))
+    (said,) = [d.message for d in nau_py.lint(room.load()) if d.rule == "T023"]
+    assert "parameter 'b' has 8 bytes and lies at byte 4 of the block" in said

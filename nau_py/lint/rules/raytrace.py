@@ -108,6 +108,41 @@ T019 = rule(
     "rtTrace inside of a closest hit program without an end",
     "if (prd.depth < 8) rtTrace(…);",
 )
+T020 = rule(
+    "T020",
+    WARNING,
+    "Program reads beyond its record",
+    "Records of hits have 112 bytes, those of ray generation and misses 16 (nau-format.md, 7.1).",
+    "((HitData *)optixGetSbtDataPointer())->mine, at byte 128",
+    "a member of Nau's own structure, or a parameter of rtGlobalParams",
+)
+T021 = rule(
+    "T021",
+    WARNING,
+    "Payload that does not fit",
+    "A program uses words or bytes of a payload with which no ray of the pass is sent, or sends "
+    "more than the two words of Nau's pipeline.",
+    "optixSetPayload_2 in a hit program, optixTrace(…, p0, p1)",
+    "optixTrace(…, p0, p1, p2) or two words that hold an address",
+)
+T022 = rule(
+    "T022",
+    WARNING,
+    "Material entry is not whole",
+    "Nau makes the records of a material from its own entry, without looking at the default one: "
+    "an entry with fewer ray types shifts the records behind it, one without a miss program may "
+    "leave the pass without. nau_py keeps records in step.",
+    "<rtMap to='Glass'> with Radiance only, where there is Shadow, too",
+    "<rtMap to='Glass'> with an entry for each ray type, miss programs included",
+)
+T023 = rule(
+    "T023",
+    WARNING,
+    "Parameter at an odd place",
+    "The block of rtGlobalParams is packed without gaps, compilers align addresses to 8 bytes.",
+    "a FLOAT, then a BUFFER ID",
+    "the BUFFER ID first",
+)
 T006 = rule(
     "T006",
     ERROR,

@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from nau_py.raytrace.ptx.native import Native
 
 
+Modules = dict[Path, "Module | PtxError | OSError"]
+"""By file; or why one cannot be read."""
+
+
 def used_programs(pass_: RaytracePass) -> Iterator[Program]:
     """Every program that a pass can run."""
     entry = pass_.rtEntryPoint
@@ -45,9 +49,9 @@ def read_module(path: Path) -> Module:
     return read_ptx(path.read_text("utf-8", "replace"))
 
 
-def modules_of(pass_: RaytracePass, folder: Path) -> dict[Path, Module | PtxError | OSError]:
+def modules_of(pass_: RaytracePass, folder: Path) -> Modules:
     """The modules of a pass by file, or why one cannot be read."""
-    found: dict[Path, Module | PtxError | OSError] = {}
+    found: Modules = {}
     for program in used_programs(pass_):
         path = resolve_path(folder, program.file or "").best
         if path in found or path.suffix.lower() != COMPILED or not path.exists():
@@ -132,9 +136,7 @@ class Programs:
         ]
 
 
-def module_faults(
-    pass_: RaytracePass, modules: dict[Path, Module | PtxError | OSError], folder: Path
-) -> Iterator[Diagnostic]:
+def module_faults(pass_: RaytracePass, modules: Modules, folder: Path) -> Iterator[Diagnostic]:
     """What of a pass's modules cannot be read or compiled."""
     label = f"pass '{pass_.name}'"
     said: set[Path] = set()

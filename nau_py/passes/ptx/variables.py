@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 
 from nau_py.diagnostic import Diagnostic, error, listing, nearest, warning
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import Program, RaytracePass, RayVariable
-from nau_py.passes.ptx.programs import find_function, used_programs
+from nau_py.passes.ptx.programs import Modules, find_function, used_programs
 from nau_py.paths import resolve as resolve_path
 from nau_py.raytrace.ptx.optix6 import Declared, declared
 from nau_py.raytrace.ptx.reader import Function, Module, PtxError
@@ -34,11 +33,12 @@ def given(project: Project, pass_: RaytracePass) -> dict[str, int | None]:
     found |= {f"tex{unit}": None for unit in range(UNITS)}
     for node in [*pass_.rtGlobalParams, *pass_.rtMaterialParams]:
         if node.name:
-            found[node.name] = _bytes(project, node)
+            found[node.name] = value_bytes(project, node)
     return found
 
 
-def _bytes(project: Project, node: RayVariable) -> int | None:
+def value_bytes(project: Project, node: RayVariable) -> int | None:
+    """Bytes of a parameter's value; None where it is not known."""
     if node.component == "ID" and node.type in ("TEXTURE", "BUFFER"):
         return 8
     set_ = project.registry.get(node.type or "")
@@ -58,7 +58,7 @@ def mentioned(function: Function, names: dict[str, Declared]) -> list[str]:
 def variable_faults(
     project: Project,
     pass_: RaytracePass,
-    modules: dict[Path, Module | PtxError | OSError],
+    modules: Modules,
 ) -> Iterator[Diagnostic]:
     """Variables that programs read and nothing sets, or that have another size."""
     known = given(project, pass_)

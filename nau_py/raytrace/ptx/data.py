@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import re
 
-from nau_py.raytrace.ptx.function import integer
+from nau_py.raytrace.ptx.function import WHOLE_NUMBER, integer
 from nau_py.raytrace.ptx.reader import SIZES, PtxError, Variable
 
 _HEX_FLOAT = re.compile(r"0[fFdD]([0-9a-fA-F]{8}|[0-9a-fA-F]{16})$")
-_INTEGER = re.compile(r"-?(0[xX][0-9a-fA-F]+|0[bB][01]+|\d+)U?$")
 _SYMBOL = re.compile(r"(?:generic\()?([A-Za-z_$%][\w$]*)\)?(?:\s*\+\s*(\d+))?$")
 Part = int | tuple[str, int]
 """A number, or a name and what is added to its address."""
@@ -21,7 +20,7 @@ def _parts(variable: Variable) -> list[Part]:
         text = word.strip()
         if not text:
             continue
-        bits, whole = _HEX_FLOAT.match(text), _INTEGER.match(text)
+        bits, whole = _HEX_FLOAT.match(text), WHOLE_NUMBER.match(text)
         symbol = _SYMBOL.match(text)
         if bits:
             found.append(int(bits[1], 16))

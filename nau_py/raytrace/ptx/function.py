@@ -17,7 +17,7 @@ FRAME = "%frame"
 """The hidden first argument of every function: what runs, for whom (``optix7``)."""
 _HEX_FLOAT = re.compile(r"0[fF]([0-9A-Fa-f]{8})$")
 _HEX_DOUBLE = re.compile(r"0[dD]([0-9A-Fa-f]{16})$")
-_INTEGER = re.compile(r"-?(0[xX][0-9A-Fa-f]+|0[bB][01]+|0[0-7]*|[1-9]\d*)U?$")
+WHOLE_NUMBER = re.compile(r"-?(0[xX][0-9A-Fa-f]+|0[bB][01]+|0[0-7]*|[1-9]\d*)U?$")
 _DECIMAL = re.compile(r"-?(\d+\.\d*|\.\d+|\d+)([eE][+-]?\d+)?$")
 _ADDRESS = re.compile(r"\[\s*([^\s+\]]+)\s*(?:\+\s*(-?\w+)\s*)?\]$")
 _SPECIAL = re.compile(r"%(n?tid|n?ctaid|laneid|warpid|nwarpid|smid|nsmid|clock|clock64)(\.[xyz])?$")
@@ -190,7 +190,7 @@ class Writer:
             return f"0x{bits:016X}" if type_ == "f64" else str(bits)
         if is_float(type_) and _DECIMAL.match(operand):
             return float_text(float(operand), type_)
-        if _INTEGER.match(operand):
+        if WHOLE_NUMBER.match(operand):
             number = integer(operand)
             if type_ == "pred":
                 return "true" if number else "false"
@@ -259,7 +259,7 @@ class Writer:
             raise self.fail(f"'{operand}' is no address")
         base, offset = found[1], 0
         if found[2]:
-            if not _INTEGER.match(found[2]):
+            if not WHOLE_NUMBER.match(found[2]):
                 raise self.fail(f"'{operand}' is no address")
             offset = integer(found[2])
         place = self.place(base) if self.register(base) is None else None

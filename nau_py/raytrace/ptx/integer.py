@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nau_py.raytrace.ptx.arithmetic import Handler, type_in
-from nau_py.raytrace.ptx.function import Writer, integer, is_float, is_signed, llvm
+from nau_py.raytrace.ptx.function import WHOLE_NUMBER, Writer, integer, is_float, is_signed, llvm
 from nau_py.raytrace.ptx.reader import SIZES
 
 
@@ -37,6 +37,8 @@ def shf(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
 def lop3(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     """Any logic of three words, by its table of eight bits."""
     a, b, c = (w.read(operand, "b32") for operand in operands[1:4])
+    if not WHOLE_NUMBER.match(operands[4]):
+        raise w.fail(f"the table of 'lop3' is no number: '{operands[4]}'")
     table = integer(operands[4]) & 255
     inverse = [w.value(f"xor i32 {value}, -1") for value in (a, b, c)]
     result = "0"

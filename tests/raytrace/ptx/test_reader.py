@@ -11,6 +11,7 @@ import pytest
 from nau_py.raytrace.ptx.compile import compile_all, compile_module
 from nau_py.raytrace.ptx.native import Native, NotNative
 from nau_py.raytrace.ptx.reader import PtxError, read_ptx
+from nau_py.raytrace.ptx.uses import uses_of
 from tests.raytrace.ptx.bench import HEAD, source
 
 DATA = Path(__file__).parent / "data"
@@ -124,7 +125,10 @@ def survives(text: str, chance: random.Random, native: bool) -> None:
     said: list[PtxError] = []
     made = ""
     try:
-        made, said = compile_all(read_ptx(mutated(text, chance)))
+        module = read_ptx(mutated(text, chance))
+        made, said = compile_all(module)
+        for function in module.functions.values():
+            uses_of(module, function)
     except PtxError as problem:
         said = [problem]
     assert all(problem.line >= 1 and str(problem) for problem in said)

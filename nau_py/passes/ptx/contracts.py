@@ -1,0 +1,155 @@
+"""What programs and pass expect of each other: records, payloads, entries, parameters.
+
+nau-format.md, 7.1 and 13.3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from nau_py.diagnostic import Diagnostic, warning
+from nau_py.model.builtins import CLOSEST_HIT, MISS
+from nau_py.model.linked import Project
+from nau_py.model.raytrace import Program, RaytracePass
+from nau_py.passes.ptx.programs import Modules, find_function, used_programs
+from nau_py.passes.ptx.variables import value_bytes
+from nau_py.paths import resolve as resolve_path
+from nau_py.raytrace.ptx.optix6 import declared, is_old
+from nau_py.raytrace.ptx.reader import Module, PtxError
+from nau_py.raytrace.ptx.uses import Uses, uses_of
+
+HIT_RECORD, OTHER_RECORD = 112, 16
+"""Bytes of the data in a record of hits, and of ray generation and misses."""
+PAYLOAD_WORDS = 2
+"""Of Nau's pipeline."""
+
+
+def contract_faults(
+    project: Project, pass_: RaytracePass, modules: Modules
+) -> Iterator[Diagnostic]:
+    """Records that are too short, payloads that were not sent, entries without a ray type,
+    parameters at odd places."""
+    used = list(_used(project.folder, pass_, modules))
+    if any(isinstance(m, Module) and is_old(m) for m in modules.values()):
+        yield from _old_payloads(pass_, used)
+        return
+    yield from _records(pass_, used)
+    yield from _payloads(pass_, used)
+    yield from _entries(pass_)
+    yield from _parameters(project, pass_)
+
+
+Used = tuple[Program, Module, Uses]
+
+
+def _used(folder: Path, pass_: RaytracePass, modules: Modules) -> Iterator[Used]:
+    seen: set[tuple[Path, str]] = set()
+    for program in used_programs(pass_):
+        path = resolve_path(folder, program.file or "").best
+        module, name = modules.get(path), program.proc or ""
+        if not isinstance(module, Module) or (path, name) in seen:
+            continue
+        seen.add((path, name))
+        function = find_function(module, name)
+        if function is not None:
+            yield program, module, uses_of(module, function)
+
+
+def _label(pass_: RaytracePass, program: Program) -> str:
+    return f"pass '{pass_.name}': program '{program.proc}' of '{program.file}'"
+
+
+def _records(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]:
+    for program, _, uses in used:
+        hit = getattr(program, "type", None) in ("CLOSEST_HIT", "ANY_HIT")
+        size = HIT_RECORD if hit else OTHER_RECORD
+        if uses.record > size:
+            yield warning(
+                "T020",
+                program.where("proc"),
+                f"{_label(pass_, program)} reads up to byte {uses.record} of its record, which has "
+                f"{size}",
+            )
+
+
+def _payloads(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]:
+    sent = {words for _, _, uses in used for words in uses.sent}
+    most = max(sent, default=0)
+    for program, _, uses in used:
+        label = _label(pass_, program)
+        if uses.sent and max(uses.sent) > PAYLOAD_WORDS:
+            yield warning(
+                "T021",
+                program.where("proc"),
+                f"{label} sends {max(uses.sent)} words of payload: Nau's pipeline has "
+                f"{PAYLOAD_WORDS}, so this runs in nau_py only",
+            )
+        if sent and uses.payload > most:
+            yield warning(
+                "T021",
+                program.where("proc"),
+                f"{label} uses word {uses.payload - 1} of the payload, rays are sent with {most}",
+            )
+
+
+def _old_payloads(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]:
+    sent = {size for _, _, uses in used for size in uses.sent_bytes}
+    for program, module, _ in used:
+        try:
+            variables = declared(module).items()
+        except PtxError:
+            continue
+        function = find_function(module, program.proc or "")
+        text = " ".join(o for i in (function.body or [] if function else []) for o in i.operands)
+        for name, variable in variables:
+            if variable.semantic != "rtPayload" or f"[{name}" not in text or not sent:
+                continue
+            if variable.size > max(sent):
+                yield warning(
+                    "T021",
+                    program.where("proc"),
+                    f"{_label(pass_, program)} has a payload '{name}' of {variable.size} bytes, "
+                    f"rays are sent with {max(sent)}",
+                )
+
+
+def _entries(pass_: RaytracePass) -> Iterator[Diagnostic]:
+    """An entry with fewer ray types, or without what the default has (13.3, 63 and 64)."""
+    types, default = pass_.ray_types, pass_.rtDefaultMaterial
+    for entry in pass_.rtMaterialMap:
+        has = {group.name for group in entry.rayTypes}
+        lacking = [name for name in types if name not in has]
+        if lacking:
+            listed = ", ".join(f"'{name}'" for name in lacking)
+            yield warning(
+                "T022",
+                entry.location,
+                f"pass '{pass_.name}': material '{entry.to}' has no entry for ray type {listed}: "
+                "such rays pass nothing on from it; Nau's records would be out of step behind it",
+            )
+        for name in types:
+            for kind in (CLOSEST_HIT, MISS) if name in has else ():
+                wanted = default.program(name, kind) if default else None
+                if kind == MISS and wanted is not None and entry.program(name, kind) is None:
+                    yield warning(
+                        "T022",
+                        entry.location,
+                        f"pass '{pass_.name}': material '{entry.to}' has no miss program of ray "
+                        f"type '{name}': where its geometry comes first, by name, misses have none",
+                    )
+
+
+def _parameters(project: Project, pass_: RaytracePass) -> Iterator[Diagnostic]:
+    """Addresses that do not lie at a multiple of their size (13.3, 67)."""
+    at = 0
+    for node in pass_.rtGlobalParams:
+        size = value_bytes(project, node) or 4
+        if node.component == "ID" and node.type in ("TEXTURE", "BUFFER") and at % 8:
+            yield warning(
+                "T023",
+                node.location,
+                f"pass '{pass_.name}': parameter '{node.name}' has 8 bytes and lies at byte {at} "
+                "of the block, where nothing is aligned: compilers look for it at a multiple of 8",
+            )
+        at += size
