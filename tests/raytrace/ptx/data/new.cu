@@ -1,5 +1,5 @@
 // Programs in the interface of OptiX 7 and 8 for test_device.py.
-// scripts/ptx tests/raytrace/ptx/data/new.cu makes new.ptx.
+// scripts/ptx -rdc=true tests/raytrace/ptx/data/new.cu makes new.ptx.
 
 typedef unsigned long long u64;
 
@@ -27,6 +27,7 @@ ASK(unsigned, "=r", get_remaining_trace_depth)
 ASK(unsigned, "=r", get_attribute_0)
 ASK(unsigned, "=r", get_attribute_1)
 ASK(unsigned, "=r", read_instance_id)
+ASK(unsigned, "=r", read_instance_idx)
 ASK(unsigned, "=r", get_transform_list_size)
 ASK(float, "=f", get_ray_tmax)
 
@@ -43,32 +44,30 @@ __device__ inline void set_payload(unsigned index, unsigned value) {
 }
 
 // A ray from (x, y, 3) along -z with words 0, 9 and 31 of a payload of 32.
-__device__ inline void trace(float x, float y, unsigned flags, unsigned& p0, unsigned& p9, unsigned& p31) {
-    unsigned q[32];
-    for (int i = 0; i < 32; ++i)
-        q[i] = 0;
+__device__ inline void trace(float x, float y, unsigned& p0, unsigned& p9, unsigned& p31) {
+    unsigned q0, q9, q31, other;
     asm volatile(
         "call (%0,%3,%3,%3,%3,%3,%3,%3,%3,%1,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%2),"
         "_optix_trace_typed_32,"
-        "(%3,%4,%5,%6,%7,%8,%8,%9,%8,%10,%8,%11,%12,%3,%13,%3,%14,"
-        "%15,%3,%3,%3,%3,%3,%3,%3,%3,%16,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%3,%17);"
-        : "=r"(q[0]), "=r"(q[9]), "=r"(q[31]), "+r"(q[1])
-        : "l"(optixLaunchParams.handle), "f"(x), "f"(y), "f"(3.0f), "f"(0.0f), "f"(-1.0f), "f"(1e20f),
-          "r"(255), "r"(flags), "r"(1), "r"(32), "r"(p0), "r"(p9), "r"(p31));
-    p0 = q[0], p9 = q[9], p31 = q[31];
+        "(%4,%5,%6,%7,%8,%9,%9,%10,%9,%11,%9,%12,%4,%4,%13,%4,%14,"
+        "%15,%4,%4,%4,%4,%4,%4,%4,%4,%16,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%4,%17);"
+        : "=r"(q0), "=r"(q9), "=r"(q31), "=r"(other)
+        : "r"(0), "l"(optixLaunchParams.handle), "f"(x), "f"(y), "f"(3.0f), "f"(0.0f), "f"(-1.0f),
+          "f"(1e20f), "r"(255), "r"(1), "r"(32), "r"(p0), "r"(p9), "r"(p31));
+    p0 = q0, p9 = q9, p31 = q31;
 }
 
 // One ray a launch index, at x = index / 16 - 1, y = 0.25.
 extern "C" __global__ void __raygen__typed() {
     unsigned a = 100, b = 200, c = 300;
-    trace(get_launch_index_x() / 16.0f - 1, 0.25f, 0, a, b, c);
+    trace(get_launch_index_x() / 16.0f - 1, 0.25f, a, b, c);
     out() = make_float4(a, b, c, get_remaining_trace_depth());
 }
 
 extern "C" __global__ void __closesthit__typed() {
     set_payload(0, payload(0) + get_hit_kind());
-    set_payload(9, payload(9) + read_primitive_idx());
-    set_payload(31, payload(31) + get_remaining_trace_depth() + read_instance_id() + get_transform_list_size());
+    set_payload(9, payload(9) + read_primitive_idx() + 16 * read_instance_idx() + 256 * get_transform_list_size());
+    set_payload(31, payload(31) + get_remaining_trace_depth() + read_instance_id());
 }
 
 extern "C" __global__ void __miss__typed() { set_payload(0, 7); }
@@ -89,7 +88,7 @@ extern "C" __global__ void __closesthit__corners() {
 
 extern "C" __global__ void __raygen__corners() {
     unsigned a = 0, b = 0, c = 0;
-    trace(get_launch_index_x() / 16.0f - 1, 0.25f, 0, a, b, c);
+    trace(get_launch_index_x() / 16.0f - 1, 0.25f, a, b, c);
     out() = make_float4(__uint_as_float(a), __uint_as_float(b), c, 0);
 }
 
@@ -106,18 +105,31 @@ extern "C" __global__ void __exception__caught() {
 }
 
 // Callable programs: 0 adds, 1 multiplies; an index that there is not is an exception.
-extern "C" __device__ __attribute__((used)) float __direct_callable__add(float a, float b) { return a + b; }
-extern "C" __device__ __attribute__((used)) float __continuation_callable__times(float a, float b) { return a * b; }
+extern "C" __device__ float __direct_callable__add(float a, float b) { return a + b; }
+extern "C" __device__ float __continuation_callable__times(float a, float b) { return a * b; }
 
-__device__ inline float called(unsigned index, float a, float b) {
+typedef float (*Called)(float, float);
+
+__device__ inline float direct(unsigned index, float a, float b) {
     u64 place;
     asm volatile("call (%0), _optix_call_direct_callable, (%1);" : "=l"(place) : "r"(index));
-    return ((float (*)(float, float))place)(a, b);
+    return ((Called)place)(a, b);
+}
+
+__device__ inline float continuation(unsigned index, float a, float b) {
+    u64 place;
+    asm volatile("call (%0), _optix_call_continuation_callable, (%1);" : "=l"(place) : "r"(index));
+    return ((Called)place)(a, b);
 }
 
 extern "C" __global__ void __raygen__calls() {
     unsigned x = get_launch_index_x();
-    out() = make_float4(called(x % 3, x, 3), called(1, x, 0.5f), 0, 0);
+    out() = make_float4(direct(0, x, 3), continuation(1, x, 0.5f), 0, 0);
+}
+
+extern "C" __global__ void __raygen__calls_nothing() {
+    out() = make_float4(1, 0, 0, 0);
+    out() = make_float4(direct(2 + get_launch_index_x(), 0, 0), 0, 0, 0);
 }
 
 // An intersection program: a unit square of side 2 at z = 0, told in three attributes.
