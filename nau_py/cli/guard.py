@@ -17,7 +17,7 @@ from nau_py.diagnostic import Diagnostic, error
 from nau_py.model.linked import Project
 from nau_py.model.program_source import launches_ptx
 from nau_py.model.raytrace import RaytracePass
-from nau_py.passes.ptx.execute import MARKS, SLOTS
+from nau_py.passes.ptx.guarded import MARKS, SLOTS
 
 Words = NDArray[np.int64]
 _PERIOD = 0.1
@@ -77,9 +77,10 @@ def _said(project: Project, seen: Words, code: int, hung: bool, limit: float) ->
     text = seen[:SLOTS].tobytes().rstrip(b"\0").decode("utf-8", "replace")
     width, _, about = text.partition("\n")
     indices = sorted({int(i) for i in seen[SLOTS:] if i >= 0})
-    columns = int(width) if width.isdigit() and int(width) else 1
-    places = ", ".join(f"({i % columns}, {i // columns})" for i in indices[:4])
-    where = f" at launch index {places}" if places else ""
+    columns = int(width) if width.isdigit() else 0
+    row = max(columns, 1)
+    places = ", ".join(f"({i % row}, {i // row})" for i in indices[:4])
+    where = f" at launch index {places}" if places and columns > 0 else ""
     if hung:
         what = f"did not end within {limit:g} s{where}"
     else:

@@ -43,6 +43,9 @@ def _programs(pass_: Pass) -> list[dict[str, str]]:
                 }
                 for program in group.programs
             ]
+    for geometry in pass_.rtGeometryProgram:
+        kind = (geometry.type or "").lower().replace("_", " ")
+        found.append({"kind": kind, "file": geometry.file or "", "proc": geometry.proc or ""})
     return found
 
 

@@ -105,14 +105,15 @@ def test_the_demo_in_an_editor(demo: Path) -> None:
 
     async def renaming(editor: Editor) -> None:
         used = await editor.references(library, '<state name="two', 'Sided">')
-        files = ["hybrid.mlib", *["project.xml"] * 3, "full.xml", *["project.yaml"] * 3]
+        three = [[name] * 3 for name in ("optix.xml", "project.yaml")]
+        files = ["hybrid.mlib", *["project.xml"] * 3, "full.xml", *three[0], *three[1]]
         assert [line.split(":")[0] for line in used] == files
         await editor.rename(library, "bothSides", '<state name="two', 'Sided">')
         for file in (project, library):
             assert "twoSided" not in editor.text(file)
             assert editor.found[file] == []
             file.write_text(editor.text(file))
-        for name in ("project.xml", "full.xml", "project.yaml"):
+        for name in ("project.xml", "full.xml", "optix.xml", "project.yaml"):
             found = nau_py.lint(nau_py.load(project.parent / name))
             assert [d for d in found if d.severity == "error"] == []
         with pytest.raises(JsonRpcException, match="there is a material 'lit' already"):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -188,6 +190,33 @@ def test_rays_without_end_end_at_the_greatest_depth(old: Folder) -> None:
     rays = frame.report["frames"][0]["passes"][1]["rays"]["First"]
     assert rays == 20 * hit.sum() + (~hit).sum()
     assert any("trace depth exceeded" in w for w in frame.report["warnings"])
+
+
+@pytest.mark.parametrize(
+    "body, words",
+    [
+        (
+            "AGAIN:\n\tld.volatile.global.u32 %r1, [index_buffer];\n\tbra AGAIN;\n",
+            "did not end within",
+        ),
+        ("\tmov.u64 %rd1, 16;\n\tst.global.u32 [%rd1], %r1;\n", "ended the process by signal SIG"),
+    ],
+)
+def test_geometry_programs_that_fault_cost_their_child_only(
+    old: Folder, body: str, words: str
+) -> None:
+    head = ".visible .entry bad(.param .u32 p, .param .u64 q)\n{\n\t.reg .b32 %r<3>;\n\t.reg .b64 %rd<3>;\n"
+    old.write("old.ptx", DATA.read_text() + head + body + "\tret;\n}\n")
+    old.write("project.xml", PROJECT.replace('proc="box"', 'proc="bad"'))
+    command = str(Path(sys.executable).parent / "nau-run")
+    done = subprocess.run(
+        [command, "project.xml", "-o", "x.png", "--program-limit", "1.5"],
+        cwd=old.path, capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert f"error[T016]: project 'Old', pass 'trace', its geometry programs {words}" in done.stderr
+    assert "launch index" not in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def test_what_lies_beyond_a_buffer_is_an_exception(old: Folder) -> None:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from nau_py.diagnostic import warning
-from nau_py.model.linked import Project
 from nau_py.model.raytrace import RaytracePass
+from nau_py.passes.ptx.guarded import marks
 from nau_py.passes.ptx.optix import OptixState
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.rt import RtState
@@ -20,10 +16,6 @@ if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord, Session
     from nau_py.raytrace.ptx.launch import Launched
 
-MARKS = "NAU_PTX_MARKS"
-"""The variable that names the file of a guarding process."""
-SLOTS = 64
-"""Of that file: 64-bit words of text, and launch indices in work."""
 _TOLD = 20
 """Printed texts that a report has."""
 _CODES = {
@@ -75,20 +67,6 @@ def ptx_state(pass_: RaytracePass, session: Session) -> PtxState:
     return found
 
 
-def marks(pass_: RaytracePass, project: Project, width: int) -> NDArray[np.int64] | None:
-    """Where a guarding process sees what is being run (``nau_py.cli.guard``); None without one."""
-    path = os.environ.get(MARKS)
-    if not path:
-        return None
-    generate = pass_.rtEntryPoint.rayGen if pass_.rtEntryPoint else None
-    about = f"project '{project.name}', pass '{pass_.name}', program '{generate and generate.proc}'"
-    words = np.memmap(path, np.int64, "r+", shape=(2 * SLOTS,))
-    text = f"{width}\n{about}".encode()[: 8 * SLOTS]
-    words[:SLOTS] = np.frombuffer(text.ljust(8 * SLOTS, b"\0"), np.int64)
-    words[SLOTS:] = -1
-    return words[SLOTS:]
-
-
 def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) -> None:
     """Launch the pass's programs over its target, or over the pixels that its mask selects."""
     from nau_py.passes.drawing import process, target_and_rect
@@ -109,11 +87,15 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
         mask = read_mask(pass_, read_inputs(pass_, frame))
         pixels = select(mask, target.width, target.height)
         stages.end("read_back")
-    state = ptx_state(pass_, session)
-    environment = state.environment
+    environment = ptx_state(pass_, session).environment
     launch = environment.begin(pass_, frame, target)
     launch.indices = pixels
-    launch.marks = marks(pass_, frame.project, target.width)
+    generate = pass_.rtEntryPoint and pass_.rtEntryPoint.rayGen
+    launch.marks = marks(
+        f"project '{frame.project.name}', pass '{pass_.name}', program "
+        f"'{generate and generate.proc}'",
+        target.width,
+    )
     stages.end("build")
     name, progress = pass_.name or "", session.progress
     done = run_launch(

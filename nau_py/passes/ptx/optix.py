@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.model.raytrace import GeometryProgram, RaytracePass
+from nau_py.passes.ptx.guarded import marks
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
 from nau_py.passes.ptx.variables import UNITS
@@ -99,6 +100,8 @@ class OptixState:
         native = programs.native(intersect) if intersect else generate[0]
         shapes = [(i.buffers["vertex_buffer"], i.buffers["index_buffer"]) for i in self.instances]
         records = [self._records(at)[0] for at in range(len(self.instances))]
+        about = f"project '{self.session.project.name}', pass '{pass_.name}', its geometry programs"
+        launch.marks = marks(about, 0)
         self.handle, self.kinds, self._kept = build_scene(
             native, launch, shapes, records, asked, boxes
         )

@@ -52,6 +52,8 @@ def build_scene(
     rays = np.zeros(TYPES, np.uint64)
     block = block_of(launch, rays, np.zeros(1, np.int64).ctypes.data)
     host = bind_host([native], [])
+    working = launch.marks if launch.marks is not None else np.zeros(1, np.int64)
+    working[0] = 0  # they run from here on
     parts: list[Triangles | Custom] = []
     kinds: list[str] = []
     kept: list[object] = [host, block, rays]
@@ -68,6 +70,7 @@ def build_scene(
             parts.append(Custom(len(triangles), *places, user))
             kinds.append(CUSTOM)
     handle, structure = build_groups(parts) if parts else (0, None)
+    working[0] = -1
     return handle, kinds, [structure, *kept]
 
 

@@ -414,6 +414,8 @@ define void @nau.bounds(ptr %args) nounwind {
   %program = call ptr @getp(ptr %user, i64 0)
   %frame = call ptr @getp(ptr %user, i64 8)
   call void %program(ptr %frame, ptr %argument, ptr %address)
+  %launch = call ptr @getp(ptr %frame, i64 $frame_launch)
+  call void @put32(ptr %launch, i64 $launch_thrown, i32 0)
   call void @llvm.memcpy.p0.p0.i64(ptr %out, ptr %box, i64 12, i1 false)
   %upper = getelementptr i8, ptr %out, i64 16
   %last = getelementptr i8, ptr %box, i64 12
@@ -471,6 +473,7 @@ define float @nau.probe(ptr %user, i32 %primitive, ptr %ray) nounwind {
   %record = getelementptr i8, ptr %data, i64 -$HEADER
   call void @build(ptr %frame, ptr %query, ptr %asked, ptr %record, i32 %primitive, i32 0)
   %taken = call i32 @intersect(ptr %query, ptr %frame, ptr %program, i32 %primitive)
+  call void @put32(ptr %launch, i64 $launch_thrown, i32 0)
   %hits = icmp ne i32 %taken, 0
   %t = call float @getf(ptr %query, i64 $query_best)
   %found = select i1 %hits, float %t, float -1.0
