@@ -58,7 +58,7 @@ class RayProgram(Program):
 
 
 class GeometryProgram(Program):
-    """An intersection or bounds program: triangles are intersected by Embree instead."""
+    """An intersection or bounding box program, of compiled programs: Python ones meet triangles."""
 
     type: Annotated[
         str | None, Attr(doc="Kind.", values=("Geometry_Intersection", "Bounding_Box"))

@@ -308,3 +308,35 @@ def test_the_selective_demo_is_that_of_its_python_twin() -> None:
     z = sums[full] / np.sqrt(variances[full] + 1e-9)
     assert full.sum() > 200
     assert np.mean(np.abs(z) > 3) < 0.03
+
+
+def test_what_compiled_programs_do_not_follow_is_said(old: Folder) -> None:
+    old.write(
+        "project.xml",
+        PROJECT.replace("<optixEntryPoint>", '<TARGET_ERROR value="0.1" /><optixEntryPoint>'),
+    )
+    (found,) = nau_py.lint(old.load())
+    assert (found.rule, found.severity) == ("T024", "warning")
+    assert "TARGET_ERROR has no effect on compiled programs" in found.message
+    record = render(old, effects="none").report["frames"][0]["passes"][1]
+    assert any("effects 'none' leave nothing out here" in note for note in record["notes"])
+
+
+def test_pixels_that_are_not_finite_are_counted(old: Folder) -> None:
+    """0 / 0 in one column."""
+    body = (
+        "\t.reg .f32 %bad<3>;\n\t.reg .b64 %to<9>;\n\t.reg .b32 %at<3>;\n"
+        "\tld.global.v2.u32 {%at1, %at2}, [launch_index];\n"
+        "\tcvt.u64.u32 %to1, %at1;\n\tcvt.u64.u32 %to2, %at2;\n\tmov.u64 %to3, 0;\n"
+        "\tmov.u64 %to4, output0;\n\tmov.f32 %bad1, 0f00000000;\n"
+        "\tcall (%to5), _rt_buffer_get_64, (%to4, 2, 16, %to1, %to2, %to3, %to3);\n"
+        "\tcvt.rn.f32.u32 %bad2, %at1;\n\tsub.f32 %bad2, %bad2, 0f40A00000;\n"
+        "\tdiv.rn.f32 %bad2, %bad1, %bad2;\n"
+        "\tst.v4.f32 [%to5], {%bad2, %bad1, %bad1, %bad1};\n\tret;\n}\n"
+    )
+    old.write("old.ptx", DATA.read_text() + ".visible .entry nan()\n{\n" + body)
+    frame = render(old, "nan")
+    assert frame.report["nonfinite"] == 24
+    assert any("T014" in said and "pixel (5, 0)" in said for said in frame.report["warnings"])
+    with pytest.raises(nau_py.NauError, match="T014"):
+        render(old, "nan", check_numerics=True)

@@ -143,6 +143,14 @@ T023 = rule(
     "a FLOAT, then a BUFFER ID",
     "the BUFFER ID first",
 )
+T024 = rule(
+    "T024",
+    WARNING,
+    "Attribute that compiled programs do not follow",
+    "How samples are drawn, gathered and ended is what a compiled program itself does.",
+    "<TARGET_ERROR value='0.01' /> beside <rayGen file='x.ptx' …/>",
+    "RAYS_PER_PIXEL, which programs read",
+)
 T006 = rule(
     "T006",
     ERROR,

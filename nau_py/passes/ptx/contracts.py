@@ -21,6 +21,8 @@ from nau_py.raytrace.ptx.uses import Uses, uses_of
 
 HIT_RECORD, OTHER_RECORD = 112, 16
 """Bytes of the data in a record of hits, and of ray generation and misses."""
+UNHEEDED = ("SAMPLER", "ACCUMULATE", "TARGET_ERROR", "LIGHT_SAMPLES", "OCCLUSION_DISTANCE")
+"""Attributes of the pass that only Python programs and built-in ones follow."""
 PAYLOAD_WORDS = 2
 """Of Nau's pipeline."""
 
@@ -30,6 +32,13 @@ def contract_faults(
 ) -> Iterator[Diagnostic]:
     """Records that are too short, payloads that were not sent, entries without a ray type,
     parameters at odd places."""
+    for name in (n for n in UNHEEDED if n in (pass_.settings or {})):
+        yield warning(
+            "T024",
+            pass_.location,
+            f"pass '{pass_.name}': {name} has no effect on compiled programs, which draw their own "
+            "samples",
+        )
     used = list(_used(project.folder, pass_, modules))
     if any(isinstance(m, Module) and is_old(m) for m in modules.values()):
         yield from _old_payloads(pass_, used)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from nau_py.diagnostic import warning
+from nau_py.model.effects import ALL, AUTO
 from nau_py.model.raytrace import RaytracePass
 from nau_py.passes.ptx.guarded import marks
 from nau_py.passes.ptx.optix import OptixState
@@ -105,6 +106,10 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
         lambda done, total: progress(name, done, total),
     )
     stages.end("trace")
+    odd = environment.odd()
+    if len(odd):
+        record.nonfinite, first = len(odd), int(odd[0])
+        record.blame = f"; the first is pixel ({first % target.width}, {first // target.width})"
     environment.end(pass_, frame, target)
     if pixels is not None:
         clear_pixels(target, pixels)
@@ -116,6 +121,13 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
         (types[i] if i < len(types) else f"type {i}"): int(n) for i, n in enumerate(done.rays) if n
     }
     _report(pass_, frame, record, done, target.width)
+    node = frame.project.file.effects
+    effects = options.effects or (node.simulate if node else None) or AUTO
+    if effects not in (AUTO, ALL):
+        record.notes.append(
+            f"compiled programs say themselves which rays they send: effects '{effects}' leave "
+            "nothing out here"
+        )
 
 
 def _report(

@@ -231,6 +231,13 @@ class OptixState:
                 found[f"tex{unit}"] = image.handle
         return found
 
+    def odd(self) -> NDArray[np.int64]:
+        """The pixels of the first output that are not finite."""
+        values = self.outputs.get("output0")
+        if values is None or values.dtype.kind != "f":
+            return np.zeros(0, np.int64)
+        return np.flatnonzero(~np.isfinite(values).all(axis=2))
+
     def end(self, pass_: RaytracePass, frame: FrameContext, target: Target) -> None:
         """Give what programs wrote to the textures."""
         self.resources.give_back()

@@ -102,6 +102,10 @@ class RtState:
             flush=self.programs.flushes,
         )
 
+    def odd(self) -> NDArray[np.int64]:
+        """None: colours are bytes."""
+        return np.zeros(0, np.int64)
+
     def end(self, pass_: RaytracePass, frame: FrameContext, target: Target) -> None:
         """Give the colours to the target."""
         from nau_py.passes.drawing import pass_value
