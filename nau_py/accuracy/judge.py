@@ -204,6 +204,11 @@ class Judge:
     def notes(self) -> list[str]:
         """What a reader must know to take the numbers right."""
         found = []
+        if self.truth.own_mse(self.region) == 0:
+            found.append(
+                "Other seeds change nothing: programs draw no random numbers, or their own ones, as "
+                "compiled programs do; then intervals and the reference's error are not known"
+            )
         for m in self.measured:
             if m.nonfinite:
                 found.append(f"{m.candidate.label}: {m.nonfinite} pixels were not finite")

@@ -109,7 +109,7 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
     odd = environment.odd()
     if len(odd):
         record.nonfinite, first = len(odd), int(odd[0])
-        record.blame = f"; the first is pixel ({first % target.width}, {first // target.width})"
+        record.blame = f"; the first at pixel ({first % target.width}, {first // target.width})"
     environment.end(pass_, frame, target)
     if pixels is not None:
         clear_pixels(target, pixels)
