@@ -206,7 +206,7 @@ class Judge:
         found = []
         if self.truth.own_mse(self.region) == 0:
             found.append(
-                "Other seeds change nothing: programs draw no random numbers, or their own ones, as "
+                "Other seeds change nothing: programs draw no random numbers, or their own, as "
                 "compiled programs do; then intervals and the reference's error are not known"
             )
         for m in self.measured:

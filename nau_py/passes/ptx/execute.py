@@ -120,6 +120,7 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
     record.rays = {
         (types[i] if i < len(types) else f"type {i}"): int(n) for i, n in enumerate(done.rays) if n
     }
+    record.notes += environment.notes()
     _report(pass_, frame, record, done, target.width)
     node = frame.project.file.effects
     effects = options.effects or (node.simulate if node else None) or AUTO

@@ -231,6 +231,18 @@ class OptixState:
                 found[f"tex{unit}"] = image.handle
         return found
 
+    def notes(self) -> list[str]:
+        """What the report should tell."""
+        from nau_py.raytrace.ptx.geometry import CUSTOM
+
+        count = self.kinds.count(CUSTOM)
+        if not count:
+            return []
+        return [
+            f"{count} of {len(self.kinds)} geometries are what their own programs say, no "
+            "triangles: rays ask them at each box"
+        ]
+
     def odd(self) -> NDArray[np.int64]:
         """The pixels of the first output that are not finite."""
         values = self.outputs.get("output0")

@@ -102,6 +102,10 @@ class RtState:
             flush=self.programs.flushes,
         )
 
+    def notes(self) -> list[str]:
+        """Nothing: all geometry is triangles."""
+        return []
+
     def odd(self) -> NDArray[np.int64]:
         """None: colours are bytes."""
         return np.zeros(0, np.int64)
