@@ -253,7 +253,7 @@ def test_lint_knows_the_variables(old: Folder) -> None:
     (found,) = nau_py.lint(old.load())
     assert found.rule == "T017"
     assert found.message.startswith(
-        "pass 'trace': program 'colour' of 'old.ptx' reads the plain variable 'diffuse', which "
+        "pass 'trace': program 'colour' of 'old.ptx' reads the variable 'diffuse', which "
         "nothing sets; there is "
     )
     assert found.message.endswith("(did you mean 'difuse'?)")
@@ -279,6 +279,30 @@ def test_python_programs_cannot_be_launched_by_compiled_ones(old: Folder) -> Non
     (found,) = nau_py.lint(old.load())
     assert found.rule == "T015"
     assert found.message == "pass 'trace': its programs are compiled ones, 'other.py' is none"
+
+
+def test_files_of_a_pass_fit_together(old: Folder) -> None:
+    """One interface, and one size for a variable of one name."""
+    room = (DATA.parent / "room.ptx").read_text()
+    old.write("room.ptx", room)
+    text = PROJECT.replace('file="old.ptx" proc="distance"', 'file="room.ptx" proc="__miss__blue"')
+    old.write("project.xml", text)
+    assert any(
+        d.rule == "T015"
+        and d.message
+        == "pass 'trace': 'room.ptx' is of OptiX 7, 'old.ptx' of OptiX 3 to 6: a pass has one of them"
+        for d in nau_py.lint(old.load())
+    )
+    other = DATA.read_text().replace(
+        "_ZN21rti_internal_typeinfo7diffuseE[8] = {82, 97, 121, 0, 16,",
+        "_ZN21rti_internal_typeinfo7diffuseE[8] = {82, 97, 121, 0, 12,",
+    )
+    old.write("other.ptx", other)
+    old.write(
+        "project.xml", PROJECT.replace('"old.ptx" proc="distance"', '"other.ptx" proc="distance"')
+    )
+    (found,) = [d for d in nau_py.lint(old.load()) if d.rule == "T015"]
+    assert "'diffuse' is a variable of 12 bytes, in another file of the pass" in found.message
 
 
 def test_the_selective_demo_is_that_of_its_python_twin() -> None:

@@ -12,7 +12,7 @@ from nau_py.model.program_source import COMPILED, plain_name
 from nau_py.model.raytrace import Program, RaytracePass
 from nau_py.paths import resolve as resolve_path
 from nau_py.raytrace.ptx.compile import CALLABLE, compile_all
-from nau_py.raytrace.ptx.optix6 import Layout, is_old
+from nau_py.raytrace.ptx.optix6 import Layout, calls, is_old
 from nau_py.raytrace.ptx.reader import Function, Module, PtxError, read_ptx
 
 if TYPE_CHECKING:
@@ -153,15 +153,24 @@ def module_faults(pass_: RaytracePass, modules: Modules, folder: Path) -> Iterat
             for line, text in _errors(module):
                 yield error("T015", where, f"{label}: {path.name}:{line}: {text}")
         said.add(path)
+    read = {path: module for path, module in modules.items() if isinstance(module, Module)}
+    old = [path.name for path, module in read.items() if is_old(module)]
+    new = [path.name for path, module in read.items() if calls(module, "_optix_")]
+    if old and new:
+        yield error(
+            "T015",
+            pass_.location,
+            f"{label}: '{new[0]}' is of OptiX 7, '{old[0]}' of OptiX 3 to 6: a pass has one of "
+            "them",
+        )
     layout = Layout()
-    for path, module in modules.items():
-        if isinstance(module, Module):
-            try:
-                wrong = layout.add(module)
-            except PtxError:
-                continue  # said above
-            for text in wrong:
-                yield error("T015", pass_.location, f"{label}: {path.name}: {text}")
+    for path, module in read.items():
+        try:
+            wrong = layout.add(module)
+        except PtxError:
+            continue  # said above
+        for text in wrong:
+            yield error("T015", pass_.location, f"{label}: {path.name}: {text}")
 
 
 def _errors(module: Module | PtxError | OSError) -> list[tuple[int, str]]:

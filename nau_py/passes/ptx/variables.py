@@ -91,7 +91,7 @@ def _variable(
         yield error(
             "T017",
             program.where("proc"),
-            f"{label} reads the {variable.kind} variable '{name}', which nothing sets; there is "
+            f"{label} reads the {variable.kind} '{name}', which nothing sets; there is "
             f"{listing(sorted(known))}{nearest(name, sorted(known))}",
         )
         return

@@ -30,7 +30,7 @@ from nau_py.raytrace.ptx.frame import (
 from nau_py.raytrace.ptx.function import FRAME, Writer
 from nau_py.raytrace.ptx.reader import Module, Variable
 
-PLAIN, BUFFER, TEXTURE = "plain", "buffer", "texture"
+PLAIN, BUFFER, TEXTURE = "variable", "buffer", "texture"
 BUFFER_BYTES = 40
 """Address, width, height, depth (64 bits each), bytes of an element."""
 _INTERNAL = re.compile(r"_ZN\d+rti_internal_(typeinfo|semantic)(\d+)(\w+)E$")
@@ -86,7 +86,19 @@ def _declared(variable: Variable, facts: dict[str, bytes] | None) -> Declared | 
 
 def is_old(module: Module) -> bool:
     """Whether a module is of OptiX 3 to 6."""
-    return any(_INTERNAL.match(variable.name) for variable in module.variables)
+    named = any(_INTERNAL.match(variable.name) for variable in module.variables)
+    return named or calls(module, "_rt_")
+
+
+def calls(module: Module, prefix: str) -> bool:
+    """Whether a module calls anything whose name begins so."""
+    return any(
+        operand.startswith(prefix)
+        for function in module.functions.values()
+        for instruction in function.body or []
+        if instruction.opcode.startswith("call")
+        for operand in instruction.operands
+    )
 
 
 @dataclass(slots=True)
@@ -115,7 +127,7 @@ class Layout:
             other = self.variables.setdefault(name, variable)
             if other != variable:
                 wrong.append(
-                    f"variable '{name}' is a {variable.kind} of {variable.size} bytes, in another "
+                    f"'{name}' is a {variable.kind} of {variable.size} bytes, in another "
                     f"file of the pass a {other.kind} of {other.size} bytes"
                 )
             elif name not in self.offsets:
