@@ -16,6 +16,7 @@ from nau_py.model.passes import Pass
 from nau_py.model.values import DataType
 
 PROGRAM_KINDS = ("CLOSEST_HIT", "ANY_HIT", "MISS")
+GEOMETRY_KINDS = ("Geometry_Intersection", "Bounding_Box")
 BUILTIN = "builtin"
 VERTEX_ATTRIBUTES = [
     "position",
@@ -60,9 +61,7 @@ class RayProgram(Program):
 class GeometryProgram(Program):
     """An intersection or bounding box program, of compiled programs: Python ones meet triangles."""
 
-    type: Annotated[
-        str | None, Attr(doc="Kind.", values=("Geometry_Intersection", "Bounding_Box"))
-    ] = None
+    type: Annotated[str | None, Attr(doc="Kind.", values=GEOMETRY_KINDS)] = None
 
 
 class RayTypePrograms(Node):

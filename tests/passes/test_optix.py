@@ -281,6 +281,15 @@ def test_python_programs_cannot_be_launched_by_compiled_ones(old: Folder) -> Non
     assert found.message == "pass 'trace': its programs are compiled ones, 'other.py' is none"
 
 
+def test_both_geometry_programs_are_there(old: Folder) -> None:
+    line = '          <optixProgram type="Bounding_Box" file="old.ptx" proc="box" />\n'
+    assert line in PROJECT
+    old.write("project.xml", PROJECT.replace(line, ""))
+    (found,) = nau_py.lint(old.load())
+    assert (found.rule, found.severity) == ("T008", "error")
+    assert "pass 'trace' has no Bounding_Box program" in found.message
+
+
 def test_files_of_a_pass_fit_together(old: Folder) -> None:
     """One interface, and one size for a variable of one name."""
     room = (DATA.parent / "room.ptx").read_text()

@@ -171,7 +171,8 @@ T008 = rule(
     "T008",
     ERROR,
     "Raytrace pass lacks what it needs",
-    "A raytrace pass needs an entry point with a ray generation program, and a render target.",
+    "A raytrace pass needs an entry point with a ray generation program, and a render target; with "
+    "compiled programs of OptiX 3 to 6, both geometry programs, too.",
     "<pass class='raytrace' name='a'/>",
     "… <rtEntryPoint> … <renderTarget …/> …",
 )

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from nau_py.diagnostic import Diagnostic, warning
+from nau_py.diagnostic import Diagnostic, error, warning
 from nau_py.model.builtins import CLOSEST_HIT, MISS
 from nau_py.model.linked import Project
-from nau_py.model.raytrace import Program, RaytracePass
+from nau_py.model.raytrace import GEOMETRY_KINDS, Program, RaytracePass
 from nau_py.passes.ptx.programs import Modules, find_function, used_programs
 from nau_py.passes.ptx.variables import value_bytes
 from nau_py.paths import resolve as resolve_path
@@ -42,6 +42,14 @@ def contract_faults(
     used = list(_used(project.folder, pass_, modules))
     if any(isinstance(m, Module) and is_old(m) for m in modules.values()):
         yield from _old_payloads(pass_, used)
+        for kind in GEOMETRY_KINDS:
+            if not any(program.type == kind for program in pass_.rtGeometryProgram):
+                yield error(
+                    "T008",
+                    pass_.location,
+                    f"raytrace pass '{pass_.name}' has no {kind} program, without which programs "
+                    "of OptiX 3 to 6 meet nothing",
+                )
         return
     yield from _records(pass_, used)
     yield from _payloads(pass_, used)

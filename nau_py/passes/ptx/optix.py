@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
-from nau_py.model.raytrace import GeometryProgram, RaytracePass
+from nau_py.model.raytrace import GEOMETRY_KINDS, GeometryProgram, RaytracePass
 from nau_py.passes.ptx.guarded import marks
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 Values = dict[str, "bytes | NDArray[Any] | int"]
 """Of variables by name: bytes, an array (a buffer, its last axis one element), or the handle of a
 texture."""
-_INTERSECTION, _BOUNDS = "Geometry_Intersection", "Bounding_Box"
 
 
 @dataclass(slots=True)
@@ -36,13 +35,6 @@ class Instance:
 
     material: str
     buffers: Values
-
-    @property
-    def count(self) -> int:
-        """Of primitives."""
-        indices = self.buffers["index_buffer"]
-        assert isinstance(indices, np.ndarray)
-        return len(indices) // 3
 
 
 class OptixState:
@@ -68,7 +60,7 @@ class OptixState:
         from nau_py.raytrace.ptx.launch import record_table, set_program
 
         layout, types = programs.layout, pass_.ray_types
-        intersect, bounds = (_geometry(pass_, kind) for kind in (_INTERSECTION, _BOUNDS))
+        intersect, bounds = (_geometry(pass_, kind) for kind in GEOMETRY_KINDS)
         asked, boxes = programs.address(intersect), programs.address(bounds)
         hits = record_table(len(self.instances) * len(types), layout.record_bytes)
         for at, instance in enumerate(self.instances):

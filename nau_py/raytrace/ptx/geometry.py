@@ -50,13 +50,14 @@ def build_scene(
     (3 m, 1), ``records`` their records with geometry written, ``intersect`` and ``bounds`` the
     programs' addresses. Returns the handle, the kind of each group, and what must be kept."""
     rays = np.zeros(TYPES, np.uint64)
-    block = block_of(launch, rays, np.zeros(1, np.int64).ctypes.data)
+    mark = np.zeros(1, np.int64)
+    block = block_of(launch, rays, mark.ctypes.data)
     host = bind_host([native], [])
     working = launch.marks if launch.marks is not None else np.zeros(1, np.int64)
     working[0] = 0  # they run from here on
     parts: list[Triangles | Custom] = []
     kinds: list[str] = []
-    kept: list[object] = [host, block, rays]
+    kept: list[object] = [host, block, rays, mark]
     for (positions, indices), record in zip(shapes, records):
         triangles = indices.reshape(-1, 3)
         asked = _asked(block, record, intersect, bounds)
