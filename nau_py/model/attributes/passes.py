@@ -52,6 +52,12 @@ PASS = AttributeSet.of(
             "nau_py: above 0, RAYS_PER_PIXEL is the most; pixels stop at this estimated error.",
             minimum=0.0,
         ),
+        choice(
+            "TEXTURE_WEIGHTS",
+            "CUDA",
+            "CUDA EXACT",
+            "nau_py: compiled programs read between texels by weights of 8 bits, or exact ones.",
+        ),
         flag("ACCUMULATE", False, "nau_py: frames add up while camera, mask and lights stay."),
         number("LIGHT_SAMPLES", _INT, 1, "nau_py: shadow rays a sample and area light.", minimum=1),
         number(

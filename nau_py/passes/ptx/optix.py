@@ -46,7 +46,7 @@ class OptixState:
 
     def __init__(self, pass_: RaytracePass, session: Session, programs: Programs) -> None:
         self.session = session
-        self.resources = Resources(session)
+        self.resources = Resources(session, pass_)
         self.instances = _instances(pass_, session)
         self.mapped = session.pass_materials(pass_)
         self.outputs: dict[str, NDArray[Any]] = {}

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.diagnostic import warning
-from nau_py.model.raytrace import RayVariable
+from nau_py.model.raytrace import RaytracePass, RayVariable
 from nau_py.model.texture import Texture
 from nau_py.paths import resolve as resolve_path
 
@@ -24,8 +24,10 @@ class Resources:
     """What programs have the addresses of; textures of files are read once, those that passes
     write in every frame."""
 
-    def __init__(self, session: Session) -> None:
+    def __init__(self, session: Session, pass_: RaytracePass) -> None:
         self.session = session
+        weights = session.project.value(pass_, "PASS", "TEXTURE_WEIGHTS")[0]
+        self._exact = weights == "EXACT"
         self._images: dict[tuple[str, object], Image | None] = {}
         self._now: list[Image] = []
         self._buffers: dict[str, NDArray[np.uint8]] = {}
@@ -50,7 +52,7 @@ class Resources:
             self._images[key] = None
             try:
                 if path is not None:
-                    self._images[key] = _sampled(_texels(path), settings)
+                    self._images[key] = _sampled(_texels(path), settings, self._exact)
             except (ImageError, OSError, ValueError) as problem:
                 where = self.session.project.file.location
                 said = f"texture '{name}': {problem}; rays see none"
@@ -72,7 +74,9 @@ class Resources:
         gl.read_texture(texture.glo, 0, format_.layout, format_.kind, out)
         values = out if format_.dtype == np.uint8 else out.astype(np.float32)
         texels = values[0] if len(values) == 1 else values
-        made = Image(texels, False, (True, True), True) if by_texel else Image(texels)
+        made = Image(texels, exact=self._exact)
+        if by_texel:
+            made = Image(texels, False, (True, True), True)
         self._now.append(made)
         return made
 
@@ -115,14 +119,15 @@ class Resources:
         return np.asarray(value).astype(np.int32 if whole else np.float32).tobytes()
 
 
-def _sampled(texels: Any, settings: dict[str, Any] | None) -> Image:
+def _sampled(texels: Any, settings: dict[str, Any] | None, exact: bool) -> Image:
     from nau_py.raytrace.kernels.sampler import Image
 
     if settings is None:
-        return Image(texels)
+        return Image(texels, exact=exact)
     named = {name: str(parts[0]) for name, parts in settings.items() if parts}
     clamp = tuple(named.get(f"WRAP_{axis}") == "CLAMP_TO_EDGE" for axis in "ST")
-    return Image(texels, named.get("MAG_FILTER") != "NEAREST", (clamp[0], clamp[1]))
+    between = named.get("MAG_FILTER") != "NEAREST"
+    return Image(texels, between, (clamp[0], clamp[1]), exact=exact)
 
 
 def _texels(path: Path) -> Any:

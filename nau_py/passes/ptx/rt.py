@@ -39,7 +39,7 @@ class RtState:
         from nau_py.raytrace.ptx.records import Scene
 
         self.session = session
-        self.resources = Resources(session)
+        self.resources = Resources(session, pass_)
         self.scene = Scene(list(groups(session.world, pass_)))
         self.buffer = np.zeros(_PAD, np.uint32)
         self._last: tuple[Any, ...] | None = None

@@ -30,13 +30,15 @@ TEXTURE = np.dtype(
         ("linear", "i4"),
         ("clamp", "i4"),
         ("by_texel", "i4"),
+        ("exact", "i4"),
     ],
     align=True,
 )
 """A texture object: address of the texels, row 0 at the bottom; ``bytes``: they are read as 0 to 1,
 else they are float32; ``dimensions``: 2 or 3, in which it must be asked for, else all is 0;
 ``linear``: between texels, else the nearest; ``clamp``: 1 for the first axis, 2 for the second:
-the last texel goes on, else the texture repeats; ``by_texel``: coordinates count texels."""
+the last texel goes on, else the texture repeats; ``by_texel``: coordinates count texels;
+``exact``: weights are not rounded to 8 bits."""
 _WEIGHT = 256.0
 
 
@@ -49,6 +51,7 @@ class Image:
     linear: bool | None = None
     clamp: tuple[bool, bool] = (False, False)
     by_texel: bool = False
+    exact: bool = False
     record: NDArray[np.void] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -63,7 +66,7 @@ class Image:
         self.record["dimensions"] = texels.ndim - 1
         self.record["linear"] = of_bytes if self.linear is None else self.linear
         self.record["clamp"] = self.clamp[0] + 2 * self.clamp[1]
-        self.record["by_texel"] = self.by_texel
+        self.record["by_texel"], self.record["exact"] = self.by_texel, self.exact
 
     @property
     def handle(self) -> int:
@@ -100,8 +103,9 @@ def _nearest(x: float, scaled: float, size: int, plain: bool) -> int:
 
 
 @inner
-def _weight(place: float) -> float:
-    return floor((place - floor(place)) * _WEIGHT + 0.5) / _WEIGHT
+def _weight(place: float, exact: bool) -> float:
+    part = place - floor(place)
+    return part if exact else floor(part * _WEIGHT + 0.5) / _WEIGHT
 
 
 @inner
@@ -137,14 +141,15 @@ def _sample(handle: Any, dimensions: int, x: float, y: float, z: float, out: Any
         return
     u, v, w = u - 0.5, v - 0.5, w - 0.5
     i, j = floor(u), floor(v)
-    a, b = _weight(u), _weight(v)
+    exact = i32(handle, 11) != 0
+    a, b = _weight(u, exact), _weight(v, exact)
     left, right = _wrapped(i, width, clamp_x), _wrapped(i + 1, width, clamp_x)
     low, high = _wrapped(j, height, clamp_y) * width, _wrapped(j + 1, height, clamp_y) * width
     if depth == 1:
         for channel in range(4):
             put_f32(out, channel, _plane(handle, texels, 0, left, right, low, high, a, b, channel))
         return
-    c, size = _weight(w), width * height
+    c, size = _weight(w, exact), width * height
     near, far = _wrapped(floor(w), depth, 0) * size, _wrapped(floor(w) + 1, depth, 0) * size
     for channel in range(4):
         front = _plane(handle, texels, near, left, right, low, high, a, b, channel)

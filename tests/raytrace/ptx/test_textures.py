@@ -23,12 +23,15 @@ def fetch(image: Image, dimensions: int, points: Array) -> Array:
     return out
 
 
-def between(texels: Array, points: Array) -> Array:
-    """Trilinear with repetition, float64, weights of 8 bits: rows of (depth, height, width, c)."""
+def between(texels: Array, points: Array, exact: bool = False) -> Array:
+    """Trilinear with repetition, float64, weights of 8 bits or exact: rows of (depth, height,
+    width, c)."""
     sizes = np.array(texels.shape[2::-1])
     place = points.astype(np.float32).astype(np.float64) * sizes - 0.5
     low = np.floor(place)
-    weight = np.floor((place - low) * 256 + 0.5) / 256
+    weight = place - low
+    if not exact:
+        weight = np.floor(weight * 256 + 0.5) / 256
     total = np.zeros((len(points), texels.shape[3]))
     for corner in range(8):
         step = np.array([corner & 1, corner >> 1 & 1, corner >> 2])
@@ -38,12 +41,13 @@ def between(texels: Array, points: Array) -> Array:
     return total
 
 
-def test_volumes_of_bytes_are_read_between_texels() -> None:
+@pytest.mark.parametrize("exact", [False, True])
+def test_volumes_of_bytes_are_read_between_texels(exact: bool) -> None:
     chance = np.random.default_rng(3)
     texels = chance.integers(0, 256, (3, 4, 5, 2), dtype=np.uint8)
     points = chance.uniform(-1.5, 2.5, (500, 3)).astype(np.float32)
-    found = fetch(Image(texels), 3, points)
-    np.testing.assert_allclose(found[:, :2], between(texels, points), atol=1e-6)
+    found = fetch(Image(texels, exact=exact), 3, points)
+    np.testing.assert_allclose(found[:, :2], between(texels, points, exact), atol=1e-6)
     assert (found[:, 2:] == 0).all()
 
 
