@@ -47,6 +47,8 @@ program tells of its hit, 0 for triangles; ``origin_x`` to ``tmax`` are a ``Ray`
 FRAME_BYTES = _bytes(PLACES)
 IGNORE, TERMINATE = 1, 2
 """Bits of ``status`` that any-hit programs set."""
+BUFFER_INDEX, NO_CALLABLE = 0x3FD, -10
+"""Codes of the runtime's own exceptions: RT_EXCEPTION_BUFFER_INDEX_OUT_OF_BOUNDS, and ours."""
 DETAILS = 8
 """Words that a thrown exception has."""
 PRINTED = 64
@@ -99,6 +101,7 @@ def fill_in(text: str) -> str:
     numbers |= {f"record_{name}": offset for name, (offset, _) in RECORD.items()}
     numbers |= EMBREE
     numbers |= {"FRAME": FRAME_BYTES, "QUERY": QUERY_BYTES, "HEADER": RECORD_HEADER}
+    numbers |= {"BUFFER_INDEX": BUFFER_INDEX, "NO_CALLABLE": NO_CALLABLE}
     numbers |= {"IGNORE": IGNORE, "TERMINATE": TERMINATE, "PRINTED": PRINTED}
     return Template(text).substitute({k: str(v) for k, v in numbers.items()})
 

@@ -43,8 +43,8 @@ _FRAME = {
 }
 """Semantics to the base and the offset of what they mean."""
 _ATTRIBUTE = "attribute "
-STACK_OVERFLOW, BUFFER_INDEX = 0x3FC, 0x3FD
-"""RT_EXCEPTION_STACK_OVERFLOW and RT_EXCEPTION_BUFFER_INDEX_OUT_OF_BOUNDS."""
+STACK_OVERFLOW = 0x3FC
+"""RT_EXCEPTION_STACK_OVERFLOW."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +58,8 @@ class Declared:
 
 def declared(module: Module) -> dict[str, Declared]:
     """The variables of a module by name; empty for a module of OptiX 7."""
+    if not is_old(module):
+        return {}
     facts: dict[str, dict[str, bytes]] = {}
     for variable in module.variables:
         found = _INTERNAL.match(variable.name)
@@ -109,6 +111,8 @@ class Layout:
     variables: dict[str, Declared] = field(default_factory=dict)
     offsets: dict[str, int] = field(default_factory=dict)
     attributes: dict[str, int] = field(default_factory=dict)
+    sizes: dict[str, int] = field(default_factory=dict)
+    """Of attributes, in bytes."""
     record_bytes: int = 0
     attribute_bytes: int = 0
 
@@ -120,7 +124,12 @@ class Layout:
                 continue
             if variable.semantic.startswith(_ATTRIBUTE):
                 attribute = variable.semantic.removeprefix(_ATTRIBUTE)
-                if attribute not in self.attributes:
+                if self.sizes.setdefault(attribute, variable.size) != variable.size:
+                    wrong.append(
+                        f"attribute '{attribute}' has {variable.size} bytes, elsewhere in the pass "
+                        f"{self.sizes[attribute]}"
+                    )
+                elif attribute not in self.attributes:
                     self.attributes[attribute] = self.attribute_bytes
                     self.attribute_bytes += -(-variable.size // 16) * 16
                 continue

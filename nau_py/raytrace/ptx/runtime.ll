@@ -665,7 +665,7 @@ take:
   ret i64 %at
 wrong:
   %launch = call ptr @getp(ptr %frame, i64 $frame_launch)
-  call void @throw(ptr %launch, i32 1021, i32 %bytes)
+  call void @throw(ptr %launch, i32 $BUFFER_INDEX, i32 %bytes)
   ret i64 0
 }
 
@@ -682,7 +682,7 @@ take:
   %found = load i64, ptr %p
   ret i64 %found
 wrong:
-  call void @throw(ptr %launch, i32 -10, i32 %index)
+  call void @throw(ptr %launch, i32 $NO_CALLABLE, i32 %index)
   ret i64 0
 }
 

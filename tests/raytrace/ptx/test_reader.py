@@ -10,12 +10,14 @@ import pytest
 
 from nau_py.raytrace.ptx.compile import compile_all, compile_module
 from nau_py.raytrace.ptx.native import Native, NotNative
+from nau_py.raytrace.ptx.optix6 import Layout, declared
 from nau_py.raytrace.ptx.reader import PtxError, read_ptx
 from nau_py.raytrace.ptx.uses import uses_of
 from tests.raytrace.ptx.bench import HEAD, source
 
 DATA = Path(__file__).parent / "data"
 ROOM = (DATA / "room.ptx").read_text()
+HEAD_END = ".address_size 64\n"
 TEXTS = (ROOM, (DATA / "old.ptx").read_text(), ROOM, (DATA / "new.ptx").read_text())
 
 
@@ -162,3 +164,25 @@ def test_machine_code_is_kept_and_checked(tmp_path: Path, monkeypatch: pytest.Mo
     kept.write_bytes(whole[:-7])
     assert Native(text).address("__raygen__camera")
     assert kept.read_bytes() == whole
+
+
+def test_only_old_modules_have_bound_variables() -> None:
+    """A byte of memory of its own looks like a buffer of OptiX 6; of OptiX 7 it is what it is."""
+    byte = ".global .align 1 .b8 flag[1];\n"
+    assert declared(read_ptx(ROOM.replace(HEAD_END, HEAD_END + byte))) == {}
+    old = declared(read_ptx((DATA / "old.ptx").read_text() + byte))
+    assert (old["flag"].kind, old["diffuse"].size, old["told"].semantic) == (
+        "buffer",
+        16,
+        "attribute told",
+    )
+
+
+def test_attributes_of_all_files_have_one_size() -> None:
+    text = (DATA / "old.ptx").read_text()
+    name = "_ZN21rti_internal_typeinfo4toldE[8] = {82, 97, 121, 0, "
+    assert f"{name}16" in text
+    layout = Layout()
+    assert layout.add(read_ptx(text)) == []
+    (said,) = layout.add(read_ptx(text.replace(f"{name}16", f"{name}8")))
+    assert said == "attribute 'told' has 8 bytes, elsewhere in the pass 16"
