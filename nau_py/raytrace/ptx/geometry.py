@@ -15,8 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.raytrace.accel import Custom, Triangles, build_groups
-from nau_py.raytrace.ptx.frame import FRAME_BYTES, PLACES, RECORD_HEADER
-from nau_py.raytrace.ptx.launch import TYPES, Launch, bind_host, block_of
+from nau_py.raytrace.ptx.launch import TYPES, Launch, bind_host, block_of, frame_of
 from nau_py.raytrace.ptx.native import Native
 
 TRIANGLES, CUSTOM = "triangles", "custom"
@@ -78,13 +77,7 @@ def build_scene(
 def _asked(
     block: NDArray[np.uint8], record: NDArray[np.uint8], intersect: int, bounds: int
 ) -> _Asked:
-    frame = np.zeros(FRAME_BYTES, np.uint8)
-    for name, value in (
-        ("launch", block.ctypes.data),
-        ("record", record.ctypes.data + RECORD_HEADER),
-    ):
-        at = PLACES[name][0]
-        frame[at : at + 8] = np.frombuffer(np.uint64(value).tobytes(), np.uint8)
+    frame = frame_of(block, record)
     place = frame.ctypes.data
     return _Asked(
         frame, np.array([bounds, place], np.uint64), np.array([intersect, place], np.uint64)

@@ -14,7 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.sampler import sampler
-from nau_py.raytrace.ptx.frame import LAUNCH, LAUNCH_BYTES, RECORD, RECORD_HEADER
+from nau_py.raytrace.ptx.frame import (
+    FRAME_BYTES,
+    LAUNCH,
+    LAUNCH_BYTES,
+    PLACES,
+    RECORD,
+    RECORD_HEADER,
+)
 from nau_py.raytrace.ptx.native import Native
 from nau_py.raytrace.ptx.printing import CALLBACK, Printed, formatted
 
@@ -121,6 +128,18 @@ def got(block: NDArray[np.uint8], name: str) -> int:
     return int(
         block[offset:].view(np.uint8)[: 8 if type_ == "u64" else 4].tobytes()[::-1].hex(), 16
     )
+
+
+def frame_of(block: NDArray[np.uint8], record: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """A frame in which a program runs outside of a launch: for a launch's block and a record."""
+    frame = np.zeros(FRAME_BYTES, np.uint8)
+    for name, value in (
+        ("launch", block.ctypes.data),
+        ("record", record.ctypes.data + RECORD_HEADER),
+    ):
+        at = PLACES[name][0]
+        frame[at : at + 8] = np.frombuffer(np.uint64(value).tobytes(), np.uint8)
+    return frame
 
 
 def bind_host(natives: list[Native], printed: Printed) -> Any:

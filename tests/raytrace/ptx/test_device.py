@@ -14,12 +14,12 @@ import pytest
 
 from nau_py.raytrace.accel import Custom, build_groups
 from nau_py.raytrace.ptx.compile import compile_module
-from nau_py.raytrace.ptx.frame import FRAME_BYTES, PLACES, RECORD_HEADER
 from nau_py.raytrace.ptx.launch import (
     TYPES,
     Launch,
     Launched,
     block_of,
+    frame_of,
     record_table,
     run_launch,
     set_program,
@@ -188,13 +188,7 @@ def test_intersection_programs_report_kind_and_attributes(native: Native) -> Non
     rays, mark = np.zeros(TYPES, np.uint64), np.zeros(1, np.int64)
     described = Launch((native, 0), 0, hits, nothing, nothing, (1, 1))
     block = block_of(described, rays, mark.ctypes.data)
-    frame = np.zeros(FRAME_BYTES, np.uint8)
-    for name, value in (
-        ("launch", block.ctypes.data),
-        ("record", hits.ctypes.data + RECORD_HEADER),
-    ):
-        at = PLACES[name][0]
-        frame[at : at + 8] = np.frombuffer(np.uint64(value).tobytes(), np.uint8)
+    frame = frame_of(block, hits[0])
     user = np.array([native.address("box"), frame.ctypes.data], np.uint64)
     places = (native.address("nau.bounds"), native.address("nau.user"))
     handle, kept = build_groups([Custom(1, *places, user.ctypes.data)])
