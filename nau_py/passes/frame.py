@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,12 +76,19 @@ class PassRecord:
     """What a raytrace pass simulates and leaves out, for the report."""
 
 
+T = TypeVar("T", bound="Tracer")
 Progress = Callable[[str, int, int], None]
 """``progress(pass name, done, total)`` while a pass works."""
 
 
 def no_progress(name: str, done: int, total: int) -> None:
     """Say nothing."""
+
+
+class Tracer(Protocol):
+    """What is made of a raytrace pass in a session."""
+
+    def __init__(self, pass_: Any, session: Session) -> None: ...
 
 
 @dataclass(slots=True)
@@ -105,6 +112,14 @@ class Session:
         self.pipeline, self.first_frame = pipeline, index
         self.materials.clear()  # both are kept by the names of passes, unique in a pipeline only
         self.tracers.clear()
+
+    def tracer(self, pass_: Pass, kind: type[T]) -> T:
+        """What a raytrace pass keeps from frame to frame, made once: ``kind(pass_, session)``."""
+        key = pass_.name or ""
+        found = self.tracers.get(key)
+        if not isinstance(found, kind):
+            found = self.tracers[key] = kind(pass_, self)
+        return found
 
     def pass_materials(self, pass_: Pass) -> PassMaterials:
         """The material mapping of a pass, made once."""

@@ -58,11 +58,11 @@ class RaytraceClass:
         from nau_py.passes.drawing import pass_value, process, target_and_rect
         from nau_py.passes.effects import effect_data
         from nau_py.passes.tracing import (
+            TracingState,
             force_mask,
             read_inputs,
             read_mask,
             store_colours,
-            tracing_state,
         )
         from nau_py.raytrace.adaptive import run_adaptive
         from nau_py.raytrace.camera import camera_rays, camera_record
@@ -93,7 +93,7 @@ class RaytraceClass:
             process(pass_.postProcess, frame)
             record.status, record.reason = "left_out", "its mask selects no pixel"
             return
-        state = tracing_state(pass_, frame.session)
+        state = frame.session.tracer(pass_, TracingState)
         state.update(pass_)
         scene = state.scene(pass_, frame, target, inputs)
 

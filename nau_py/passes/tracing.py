@@ -212,15 +212,6 @@ class TracingState:
         return RayMaterial(name, render.colours, textures, variables)
 
 
-def tracing_state(pass_: RaytracePass, session: Session) -> TracingState:
-    key = pass_.name or ""
-    if key not in session.tracers:
-        session.tracers[key] = TracingState(pass_, session)
-    found = session.tracers[key]
-    assert isinstance(found, TracingState)
-    return found
-
-
 def trust_rule(session: Session) -> TrustRule:
     """Where programs of a project may be loaded from."""
     project, options = session.project, session.options
@@ -297,11 +288,9 @@ def store_colours(target: Target, pixels: NDArray[np.int64], colours: NDArray[np
     texture_.write_values(shaped)
 
 
-def clear_pixels(target: Target, kept: NDArray[np.int64]) -> None:
-    """Give every pixel but those ``kept`` the clear value, in the first colour texture."""
-    texture_ = target.textures[target.colors[0].name]
-    values = texture_.read_values().astype(np.float32)
-    colours = values.reshape(-1, values.shape[2])[kept]
-    padded = np.zeros((len(kept), 4), np.float32)
-    padded[:, : values.shape[2]] = colours
-    store_colours(target, kept, padded)
+def store_selected(target: Target, pixels: NDArray[np.int64], values: NDArray[Any]) -> None:
+    """As :func:`store_colours`, of a whole image (height, width, channels): floats, or bytes."""
+    chosen = values.reshape(-1, values.shape[2])[pixels].astype(np.float32)
+    colours = np.zeros((len(pixels), 4), np.float32)
+    colours[:, : values.shape[2]] = chosen / 255 if values.dtype == np.uint8 else chosen
+    store_colours(target, pixels, colours)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import nau_py
+from nau_py.accuracy.judge import Judge
 from nau_py.accuracy.statistics import t95
 from tests.conftest import Folder
 from tests.raytrace.studio import colour, program, square, studio
@@ -88,3 +91,11 @@ def test_the_estimate_errs_on_the_safe_side(folder: Folder) -> None:
     true = np.sqrt(((frame.targets["L::out"][..., :3] - truth) ** 2).mean())
     estimate = frame.report["frames"][0]["passes"][0]["est_error"]
     assert true < estimate < 3 * true
+
+
+def test_seeds_that_change_nothing_are_told() -> None:
+    """Where two renders with other seeds agree to the bit, no interval says anything."""
+    for own, count in ((0.0, 1), (1e-4, 0)):
+        judge = Judge("rmse", "picture", SimpleNamespace(own_mse=lambda region, v=own: v), [])
+        said = [note for note in judge.notes() if "seeds change nothing" in note]
+        assert len(said) == count

@@ -247,6 +247,39 @@ def test_what_programs_print_is_in_the_report(old: Folder) -> None:
     ]
 
 
+def test_what_programs_print_in_the_old_way(old: Folder) -> None:
+    """``rtPrintf``: a format, then words with their types: an integer, a float, a double."""
+    text = "i %d f %.2f d %g"
+    codes = ", ".join(str(byte) for byte in [*text.encode(), 0])
+    writes = [0, 7, 2, 0x3FC00000, 3, 0, 0xC0040000]  # 7, 1.5, -2.5
+    body = "\t.reg .b32 %r<9>;\n\t.reg .b64 %rd<9>;\n\t.reg .pred %p<2>;\n"
+    body += "\tld.global.v2.u32 {%r1, %r2}, [launch_index];\n\tor.b32 %r3, %r1, %r2;\n"
+    body += "\tsetp.ne.u32 %p1, %r3, 0;\n\t@%p1 bra END;\n\tmov.u64 %rd1, form;\n"
+    body += "\tcall (%r4), _rt_print_active, ();\n"
+    body += "\tcall (%r5), _rt_print_start_64, (%rd1, 32);\n"
+    for place, word in enumerate(writes):
+        body += f"\tadd.u32 %r6, %r5, {4 * place};\n\tmov.u32 %r7, {word};\n"
+        body += "\tcall (), _rt_print_write32, (%r7, %r6);\n"
+    module = f".global .align 1 .b8 form[{len(text) + 1}] = {{{codes}}};\n"
+    module += f".visible .entry old_prints()\n{{\n{body}END:\n\tret;\n}}\n"
+    old.write("old.ptx", DATA.read_text() + module)
+    notes = render(old, "old_prints").report["frames"][0]["passes"][1]["notes"]
+    assert notes[1:] == ["printed at (0, 0): i 7 f 1.50 d -2.5"]
+
+
+def test_payloads_are_as_long_as_they_were_sent(old: Folder) -> None:
+    name = "_ZN21rti_internal_typeinfo7payloadE[8] = {82, 97, 121, 0, "
+    old.write("other.ptx", DATA.read_text().replace(f"{name}16", f"{name}32"))
+    text = PROJECT.replace('file="old.ptx" proc="distance"', 'file="other.ptx" proc="distance"')
+    old.write("project.xml", text)
+    (found,) = nau_py.lint(old.load())
+    assert (found.rule, found.severity) == ("T021", "warning")
+    assert found.message == (
+        "pass 'trace': program 'distance' of 'other.ptx' has a payload 'payload' of 32 bytes, rays "
+        "are sent with 16"
+    )
+
+
 def test_lint_knows_the_variables(old: Folder) -> None:
     assert nau_py.lint(old.load()) == []
     old.write("project.xml", PROJECT.replace('optixVar="diffuse"', 'optixVar="difuse"'))

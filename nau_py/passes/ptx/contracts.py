@@ -9,11 +9,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from nau_py.diagnostic import Diagnostic, error, warning
-from nau_py.model.builtins import CLOSEST_HIT, MISS
+from nau_py.model.builtins import MISS
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import GEOMETRY_KINDS, Program, RaytracePass
 from nau_py.passes.ptx.programs import Modules, find_function, used_programs
-from nau_py.passes.ptx.variables import value_bytes
+from nau_py.passes.ptx.variables import mentioned, value_bytes
 from nau_py.paths import resolve as resolve_path
 from nau_py.raytrace.ptx.optix6 import declared, is_old
 from nau_py.raytrace.ptx.reader import Module, PtxError
@@ -111,23 +111,21 @@ def _payloads(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]:
 
 
 def _old_payloads(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]:
-    sent = {size for _, _, uses in used for size in uses.sent_bytes}
-    for program, module, _ in used:
+    most = max((size for _, _, uses in used for size in uses.sent_bytes), default=0)
+    for program, module, _ in used if most else []:
         try:
-            variables = declared(module).items()
+            names = declared(module)
         except PtxError:
-            continue
+            continue  # module_faults says so
         function = find_function(module, program.proc or "")
-        text = " ".join(o for i in (function.body or [] if function else []) for o in i.operands)
-        for name, variable in variables:
-            if variable.semantic != "rtPayload" or f"[{name}" not in text or not sent:
-                continue
-            if variable.size > max(sent):
+        for name in mentioned(function, names) if function is not None else []:
+            size = names[name].size
+            if names[name].semantic == "rtPayload" and size > most:
                 yield warning(
                     "T021",
                     program.where("proc"),
-                    f"{_label(pass_, program)} has a payload '{name}' of {variable.size} bytes, "
-                    f"rays are sent with {max(sent)}",
+                    f"{_label(pass_, program)} has a payload '{name}' of {size} bytes, rays are "
+                    f"sent with {most}",
                 )
 
 
@@ -135,7 +133,7 @@ def _entries(pass_: RaytracePass) -> Iterator[Diagnostic]:
     """An entry with fewer ray types, or without what the default has (13.3, 63 and 64)."""
     types, default = pass_.ray_types, pass_.rtDefaultMaterial
     for entry in pass_.rtMaterialMap:
-        has = {group.name for group in entry.rayTypes}
+        has = [group.name for group in entry.rayTypes]
         lacking = [name for name in types if name not in has]
         if lacking:
             listed = ", ".join(f"'{name}'" for name in lacking)
@@ -145,16 +143,15 @@ def _entries(pass_: RaytracePass) -> Iterator[Diagnostic]:
                 f"pass '{pass_.name}': material '{entry.to}' has no entry for ray type {listed}: "
                 "such rays pass nothing on from it; Nau's records would be out of step behind it",
             )
-        for name in types:
-            for kind in (CLOSEST_HIT, MISS) if name in has else ():
-                wanted = default.program(name, kind) if default else None
-                if kind == MISS and wanted is not None and entry.program(name, kind) is None:
-                    yield warning(
-                        "T022",
-                        entry.location,
-                        f"pass '{pass_.name}': material '{entry.to}' has no miss program of ray "
-                        f"type '{name}': where its geometry comes first, by name, misses have none",
-                    )
+        for name in has:
+            wanted = default.program(name or "", MISS) if default else None
+            if wanted is not None and entry.program(name or "", MISS) is None:
+                yield warning(
+                    "T022",
+                    entry.location,
+                    f"pass '{pass_.name}': material '{entry.to}' has no miss program of ray type "
+                    f"'{name}': where its geometry comes first, by name, misses have none",
+                )
 
 
 def _parameters(project: Project, pass_: RaytracePass) -> Iterator[Diagnostic]:

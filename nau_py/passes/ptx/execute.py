@@ -12,6 +12,8 @@ from nau_py.passes.ptx.optix import OptixState
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.rt import RtState
 from nau_py.passes.stages import Stages
+from nau_py.raytrace.ptx.frame import BUFFER_INDEX, NO_CALLABLE
+from nau_py.raytrace.ptx.optix6 import STACK_OVERFLOW
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord, Session
@@ -22,10 +24,10 @@ _TOLD = 20
 _CODES = {
     -1: "stack overflow",
     -2: "trace depth exceeded",
-    -10: "no such callable program",
+    NO_CALLABLE: "no such callable program",
     0x3FB: "index out of bounds",
-    0x3FC: "trace depth exceeded",
-    0x3FD: "buffer index out of bounds, or elements of another size",
+    STACK_OVERFLOW: "trace depth exceeded",
+    BUFFER_INDEX: "buffer index out of bounds, or elements of another size",
     0x3FE: "invalid ray",
 }
 """Exception codes of OptiX (``optix_types.h``, ``optix_declarations.h``) and of the runtime."""
@@ -59,19 +61,10 @@ class PtxState:
             )
 
 
-def ptx_state(pass_: RaytracePass, session: Session) -> PtxState:
-    key = pass_.name or ""
-    if key not in session.tracers:
-        session.tracers[key] = PtxState(pass_, session)
-    found = session.tracers[key]
-    assert isinstance(found, PtxState)
-    return found
-
-
 def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) -> None:
     """Launch the pass's programs over its target, or over the pixels that its mask selects."""
     from nau_py.passes.drawing import process, target_and_rect
-    from nau_py.passes.tracing import clear_pixels, force_mask, read_inputs, read_mask
+    from nau_py.passes.tracing import force_mask, read_inputs, read_mask
     from nau_py.raytrace.launch import select
     from nau_py.raytrace.ptx.launch import run_launch
 
@@ -88,7 +81,7 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
         mask = read_mask(pass_, read_inputs(pass_, frame))
         pixels = select(mask, target.width, target.height)
         stages.end("read_back")
-    environment = ptx_state(pass_, session).environment
+    environment = session.tracer(pass_, PtxState).environment
     launch = environment.begin(pass_, frame, target)
     launch.indices = pixels
     generate = pass_.rtEntryPoint and pass_.rtEntryPoint.rayGen
@@ -110,9 +103,7 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
     if len(odd):
         record.nonfinite, first = len(odd), int(odd[0])
         record.blame = f"; the first at pixel ({first % target.width}, {first // target.width})"
-    environment.end(pass_, frame, target)
-    if pixels is not None:
-        clear_pixels(target, pixels)
+    environment.end(pass_, frame, target, pixels)
     stages.end("read_back")
     process(pass_.postProcess, frame)
     record.pixels = target.width * target.height if pixels is None else len(pixels)

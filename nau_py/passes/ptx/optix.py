@@ -51,6 +51,7 @@ class OptixState:
         self.mapped = session.pass_materials(pass_)
         self.outputs: dict[str, NDArray[Any]] = {}
         self.kinds: list[str] = []
+        self.handle = 0
         self.bind(pass_, programs)
 
     def bind(self, pass_: RaytracePass, programs: Programs) -> None:
@@ -160,7 +161,7 @@ class OptixState:
 
         return Launch(
             self.generate,
-            getattr(self, "handle", 0),
+            self.handle,
             self.hits,
             self.misses,
             self.context,
@@ -242,12 +243,23 @@ class OptixState:
             return np.zeros(0, np.int64)
         return np.flatnonzero(~np.isfinite(values).all(axis=2))
 
-    def end(self, pass_: RaytracePass, frame: FrameContext, target: Target) -> None:
-        """Give what programs wrote to the textures."""
+    def end(
+        self,
+        pass_: RaytracePass,
+        frame: FrameContext,
+        target: Target,
+        pixels: NDArray[np.int64] | None,
+    ) -> None:
+        """Give what programs wrote to the textures. ``pixels``: those that the mask selects, of
+        the first one; the others get the clear value."""
+        from nau_py.passes.tracing import store_selected
+
         self.resources.give_back()
         for name, texture in self._targets(pass_, target):
             values = self.outputs[name]
-            if texture.format.dtype == np.float16:
+            if pixels is not None and name == "output0":
+                store_selected(target, pixels, values)
+            elif texture.format.dtype == np.float16:
                 texture.write_values(values)
             else:
                 texture.write(values)

@@ -110,16 +110,22 @@ class RtState:
         """None: colours are bytes."""
         return np.zeros(0, np.int64)
 
-    def end(self, pass_: RaytracePass, frame: FrameContext, target: Target) -> None:
-        """Give the colours to the target."""
+    def end(
+        self,
+        pass_: RaytracePass,
+        frame: FrameContext,
+        target: Target,
+        pixels: NDArray[np.int64] | None,
+    ) -> None:
+        """Give the colours to the target. ``pixels``: those that the mask selects; the others get
+        the clear value."""
         from nau_py.passes.drawing import pass_value
+        from nau_py.passes.tracing import store_selected
 
         self.resources.give_back()
-        width, height = target.width, target.height
-        words = self.buffer[: width * height].reshape(height, width)
-        pixels = np.stack([words >> shift & 255 for shift in (0, 8, 16, 24)], axis=-1)
-        texture = target.textures[target.colors[0].name]
-        texture.write_values(pixels[:, :, : texture.format.channels].astype(np.float32) / 255)
+        count = target.width * target.height
+        words = self.buffer[:count].view(np.uint8).reshape(target.height, target.width, 4)
+        store_selected(target, np.arange(count) if pixels is None else pixels, words)
         if pass_value(frame.project, pass_, "COLOR_CLEAR") or self.sub_frame == 0:
             self.buffer[:] = 0
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from nau_py.raytrace.ptx.function import Writer, float_text, is_float, is_signed, llvm
 from nau_py.raytrace.ptx.reader import SIZES
-from nau_py.raytrace.ptx.rounding import directed, mode_of
+from nau_py.raytrace.ptx.rounding import rounded
 
 Handler = Callable[[Writer, list[str], tuple[str, ...]], None]
 _ORDERED = {"eq": "oeq", "ne": "one", "lt": "olt", "le": "ole", "gt": "ogt", "ge": "oge"}
@@ -25,18 +25,6 @@ def type_in(w: Writer, words: list[str]) -> str:
     return found
 
 
-def _rounded(w: Writer, words: list[str], type_: str, how: str, values: list[str]) -> str:
-    """An operation of floats, by the rounding that its opcode names."""
-    mode = mode_of(words)
-    if mode:
-        return directed(w, mode, type_, how, values)
-    t = llvm(type_)
-    if how in ("sqrt", "fma"):
-        listed = ", ".join(f"{t} {value}" for value in values)
-        return w.value(f"call {t} @llvm.{how}.{type_}({listed})")
-    return w.value(f"f{how} {t} {values[0]}, {values[1]}")
-
-
 def _saturated(w: Writer, words: list[str], value: str, type_: str) -> str:
     """``.sat`` of a float: into 0..1, NaN to 0."""
     if "sat" not in words:
@@ -53,7 +41,7 @@ def _binary(integer: str) -> Handler:
         a, b = w.read(operands[1], type_), w.read(operands[2], type_)
         t = llvm(type_)
         if is_float(type_):
-            value = _saturated(w, words, _rounded(w, words, type_, integer, [a, b]), type_)
+            value = _saturated(w, words, rounded(w, words, type_, integer, [a, b]), type_)
         elif "cc" in words:
             value = _with_carry(w, integer, t, a, b)
         elif "sat" in words:
@@ -121,7 +109,7 @@ def mul(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
     if is_float(type_):
-        product = _rounded(w, words, type_, "mul", [a, b])
+        product = rounded(w, words, type_, "mul", [a, b])
         w.write(operands[0], _saturated(w, words, product, type_), type_)
         return
     w.write(operands[0], *_product(w, words, type_, a, b))
@@ -132,7 +120,7 @@ def mad(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
     if is_float(type_):
-        value = _rounded(w, words, type_, "fma", [a, b, w.read(operands[3], type_)])
+        value = rounded(w, words, type_, "fma", [a, b, w.read(operands[3], type_)])
         w.write(operands[0], _saturated(w, words, value, type_), type_)
         return
     product, wide = _product(w, words, type_, a, b)
@@ -156,7 +144,7 @@ def div(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
     if is_float(type_):
-        value = _rounded(w, words, type_, "div", [a, b])
+        value = rounded(w, words, type_, "div", [a, b])
         w.write(operands[0], _of_huge(w, a, b, value) if "approx" in words else value, type_)
         return
     w.write(operands[0], _divided(w, "div", type_, a, b), type_)
@@ -251,12 +239,12 @@ def _function(name: str) -> Handler:
 def reciprocal(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a = w.read(operands[1], type_)
-    w.write(operands[0], _rounded(w, words, type_, "div", ["1.0", a]), type_)
+    w.write(operands[0], rounded(w, words, type_, "div", ["1.0", a]), type_)
 
 
 def root(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
-    w.write(operands[0], _rounded(w, words, type_, "sqrt", [w.read(operands[1], type_)]), type_)
+    w.write(operands[0], rounded(w, words, type_, "sqrt", [w.read(operands[1], type_)]), type_)
 
 
 def copysign(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:

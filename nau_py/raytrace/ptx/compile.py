@@ -12,7 +12,15 @@ from nau_py.raytrace.ptx.frame import unwind
 from nau_py.raytrace.ptx.function import FRAME, Writer, split
 from nau_py.raytrace.ptx.integer import INTEGER
 from nau_py.raytrace.ptx.memory import MEMORY
-from nau_py.raytrace.ptx.reader import FLUSHED, Function, Instruction, Module, PtxError, Variable
+from nau_py.raytrace.ptx.reader import (
+    FLUSHED,
+    Function,
+    Instruction,
+    Module,
+    PtxError,
+    Variable,
+    call_parts,
+)
 
 HANDLERS: dict[str, Handler] = ARITHMETIC | BITS | INTEGER | MEMORY
 PARAMETERS = "optixLaunchParams"
@@ -185,13 +193,9 @@ def _choose(w: Writer, operands: tuple[str, ...], labels: set[str]) -> None:
 
 
 def _call(w: Writer, operands: tuple[str, ...]) -> None:
-    """``call (returns), name, (arguments)``: each list may be missing."""
-    parts = list(operands)
-    returns = _listed(parts.pop(0)) if parts and parts[0].startswith("(") else []
-    if not parts:
+    returns, name, takes = call_parts(operands)
+    if not name:
         raise w.fail("a call names no procedure")
-    name = parts.pop(0)
-    takes = _listed(parts.pop(0)) if parts and parts[0].startswith("(") else []
     for interface in (optix7, optix6):
         if interface.known(name):
             interface.call(w, name, returns, takes)
@@ -228,7 +232,3 @@ def _parameter(w: Writer, operand: str, name: str) -> str:
     if found is None:
         raise w.fail(f"argument '{operand}' of '{name}' is no parameter")
     return found
-
-
-def _listed(text: str) -> list[str]:
-    return [part.strip() for part in text.strip("()").split(",") if part.strip()]

@@ -82,7 +82,6 @@ EMBREE = {
     "ray_tmin": 12,
     "ray_direction": 16,
     "ray_tmax": 32,
-    "ray_mask": 36,
     "hit": 48,
     "hit_u": 60,
     "hit_v": 64,

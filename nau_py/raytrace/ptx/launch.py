@@ -125,9 +125,7 @@ def put(block: NDArray[np.uint8], name: str, value: int) -> None:
 
 def got(block: NDArray[np.uint8], name: str) -> int:
     offset, type_ = LAUNCH[name]
-    return int(
-        block[offset:].view(np.uint8)[: 8 if type_ == "u64" else 4].tobytes()[::-1].hex(), 16
-    )
+    return int.from_bytes(block[offset : offset + (8 if type_ == "u64" else 4)].tobytes(), "little")
 
 
 def frame_of(block: NDArray[np.uint8], record: NDArray[np.uint8]) -> NDArray[np.uint8]:

@@ -28,7 +28,7 @@ from nau_py.raytrace.ptx.frame import (
     unwind,
 )
 from nau_py.raytrace.ptx.function import FRAME, Writer
-from nau_py.raytrace.ptx.reader import Module, Variable
+from nau_py.raytrace.ptx.reader import Module, Variable, call_parts
 
 PLAIN, BUFFER, TEXTURE = "variable", "buffer", "texture"
 BUFFER_BYTES = 40
@@ -95,11 +95,10 @@ def is_old(module: Module) -> bool:
 def calls(module: Module, prefix: str) -> bool:
     """Whether a module calls anything whose name begins so."""
     return any(
-        operand.startswith(prefix)
+        call_parts(instruction.operands)[1].startswith(prefix)
         for function in module.functions.values()
         for instruction in function.body or []
         if instruction.opcode.startswith("call")
-        for operand in instruction.operands
     )
 
 

@@ -166,14 +166,14 @@ def _asked(w: Writer, short: str, returns: list[str], takes: list[str]) -> None:
 def _payload(w: Writer, short: str, returns: list[str], takes: list[str]) -> None:
     """``get_payload_0`` of OptiX 7.0, ``get_payload, (0)`` of later ones."""
     found = _PAYLOAD.match(short)
-    number = found[2] if found else takes.pop(0)
+    number, values = (found[2], takes) if found else (takes[0], takes[1:])
     index = w.read(number, "u32")
     wide = w.value(f"zext i32 {index} to i64")
     word = w.value(f"getelementptr i32, ptr {address(w, 'payload')}, i64 {wide}")
     if short.startswith("get"):
         w.write(returns[0], w.value(f"load i32, ptr {word}"), "u32")
     else:
-        w.emit(f"store i32 {w.read(takes[0], 'u32')}, ptr {word}")
+        w.emit(f"store i32 {w.read(values[0], 'u32')}, ptr {word}")
 
 
 def _trace(w: Writer, returns: list[str], takes: list[str], payload: list[str]) -> None:

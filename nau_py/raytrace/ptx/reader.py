@@ -361,6 +361,19 @@ def _operands(text: str, line: int) -> list[str]:
     return [*parts, last] if last or parts else []
 
 
+def call_parts(operands: tuple[str, ...]) -> tuple[list[str], str, list[str]]:
+    """``call (returns), name, (arguments)``, where each list may be missing; no name: empty."""
+    parts = list(operands)
+    returns = _listed(parts.pop(0)) if parts and parts[0].startswith("(") else []
+    name = parts.pop(0) if parts else ""
+    takes = _listed(parts.pop(0)) if parts and parts[0].startswith("(") else []
+    return returns, name, takes
+
+
+def _listed(text: str) -> list[str]:
+    return [part.strip() for part in text.strip("()").split(",") if part.strip()]
+
+
 def read_ptx(text: str) -> Module:
     """The module of a text. Raises :class:`PtxError`."""
     return _Reader(text).run()

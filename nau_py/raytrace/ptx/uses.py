@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from nau_py.raytrace.ptx.reader import SIZES, Function, Instruction, Module
+from nau_py.raytrace.ptx.reader import SIZES, Function, Instruction, Module, call_parts
 
 _TRACE = re.compile(r"_optix_trace_([0-8])$")
 _PAYLOAD = re.compile(r"_optix_[gs]et_payload_([0-7])$")
@@ -40,10 +40,9 @@ def uses_of(module: Module, function: Function) -> Uses:
         seen.add(current.name)
         _add(found, current)
         for instruction in current.body or []:
-            for operand in instruction.operands:
-                called = module.functions.get(operand)
-                if called is not None and instruction.opcode.startswith("call"):
-                    open_.append(called)
+            if instruction.opcode.startswith("call"):
+                called = module.functions.get(call_parts(instruction.operands)[1])
+                open_ += [called] if called is not None else []
     return found
 
 
@@ -94,10 +93,7 @@ def _follow(
 def _call(
     found: Uses, operands: tuple[str, ...], numbers: dict[str, int], records: dict[str, int]
 ) -> None:
-    parts = list(operands)
-    returns = _listed(parts.pop(0)) if parts and parts[0].startswith("(") else []
-    name = parts.pop(0) if parts else ""
-    takes = _listed(parts.pop(0)) if parts and parts[0].startswith("(") else []
+    returns, name, takes = call_parts(operands)
 
     def number(operand: str) -> int | None:
         return int(operand) if _NUMBER.match(operand) else numbers.get(operand)
@@ -117,10 +113,6 @@ def _call(
         size = number(takes[-1])
         if size is not None:
             found.sent_bytes.add(size)
-
-
-def _listed(text: str) -> list[str]:
-    return [part.strip() for part in text.strip("()").split(",") if part.strip()]
 
 
 def _width(instruction: Instruction) -> int:

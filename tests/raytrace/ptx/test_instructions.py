@@ -502,3 +502,18 @@ def test_doubles_become_floats_by_direction(mode: str) -> None:
     near = quiet(lambda: values.astype(np.float32))
     steps = found[finite].astype(np.float32).view(np.int32).astype(np.int64)
     assert (np.abs(steps - near[finite].view(np.int32)) <= 1).all()
+
+
+@pytest.mark.parametrize("mode", ["rz", "rm", "rp"])
+@pytest.mark.parametrize("how", ["add", "mul", "div"])
+def test_doubles_that_overflow_round_by_direction(how: str, mode: str) -> None:
+    """The largest number stands for what is less than infinity; what is infinite stays so."""
+    big = np.array([1.7e308, -1.7e308, np.inf, 1.0, 1.7e308])
+    other = {"add": big, "mul": np.full(5, 10.0), "div": np.array([0.1, 0.1, 0.1, 0.0, 0.0])}[how]
+    most = np.finfo(np.float64).max
+    found = run(f"{how}.{mode}.f64 %d, %a0, %a1;", [("f64", big), ("f64", other)], "f64")
+    assert found[0] == (np.inf if mode == "rp" else most)
+    assert found[1] == (-np.inf if mode == "rm" else -most)
+    assert found[2] == np.inf
+    if how == "div":
+        assert (found[3:] == np.inf).all()
