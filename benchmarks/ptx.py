@@ -17,8 +17,8 @@ from time import perf_counter
 import numpy as np
 
 import nau_py
-from nau_py.raytrace.accel import Accelerator
-from nau_py.raytrace.geometry import gather
+from nau_py.raytrace.tracing.accelerator import Accelerator
+from nau_py.raytrace.tracing.geometry import gather
 
 TILE = 65536
 SELECTIVE = Path(__file__).parent.parent / "projects" / "selective"

@@ -29,17 +29,17 @@ import numpy as np
 from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 
-from nau_py.model.builtins import CLOSEST_HIT, MISS
-from nau_py.model.location import NOWHERE
-from nau_py.raytrace.accel import Accelerator, embree_version
-from nau_py.raytrace.builtin import PINHOLE
-from nau_py.raytrace.camera import camera_rays, camera_record
-from nau_py.raytrace.geometry import RayGeometry, gather
-from nau_py.raytrace.hits import RayLight, RayMaterial
-from nau_py.raytrace.kernels import codes
-from nau_py.raytrace.launch import LaunchResult, LaunchSettings, Work, run_launch
-from nau_py.raytrace.programs import BoundProgram
-from nau_py.raytrace.scene import Scene, TexelStore, TraceSettings
+from nau_py.diagnostics.location import NOWHERE
+from nau_py.raytrace.kernels.core import codes
+from nau_py.raytrace.programs.batch import PINHOLE
+from nau_py.raytrace.programs.catalogue import CLOSEST_HIT, MISS
+from nau_py.raytrace.tracing.accelerator import Accelerator, embree_version
+from nau_py.raytrace.tracing.batches import RayLight, RayMaterial
+from nau_py.raytrace.tracing.camera_rays import camera_rays, camera_record
+from nau_py.raytrace.tracing.dispatch import LaunchResult, LaunchSettings, Work, run_launch
+from nau_py.raytrace.tracing.geometry import RayGeometry, gather
+from nau_py.raytrace.tracing.program_loader import BoundProgram
+from nau_py.raytrace.tracing.scene_tables import Scene, TexelStore, TraceSettings
 from nau_py.scene import primitives
 from nau_py.scene.camera import CameraState
 from nau_py.scene.mesh import SceneObject

@@ -18,11 +18,11 @@ from time import perf_counter, sleep
 
 import nau_py
 from nau_py.passes.frame import RunOptions
+from nau_py.process.renderer_child import Child
+from nau_py.run.reload import Watch
 from nau_py.run.renderer import Renderer
-from nau_py.run.watch import Watch
-from nau_py.view.child import Child
-from nau_py.view.desk import Desk
-from nau_py.view.director import Director
+from nau_py.viewer.desk import Desk
+from nau_py.viewer.director import Director
 
 ROOT = Path(__file__).parent.parent
 RUNS = 5

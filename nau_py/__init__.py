@@ -11,10 +11,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import nau_py.lint  # noqa: F401  bound to the package first, so that the function below keeps the name
 from nau_py.api import lint, load, plan
-from nau_py.diagnostic import Diagnostic, Severity
-from nau_py.errors import (
+from nau_py.diagnostics.diagnostic import Diagnostic, Severity
+from nau_py.diagnostics.errors import (
     DeviceError,
     NauError,
     OutputError,
@@ -22,8 +21,8 @@ from nau_py.errors import (
     ProjectError,
     ShaderError,
 )
+from nau_py.diagnostics.location import Location
 from nau_py.model.linked import Project
-from nau_py.model.location import Location
 from nau_py.version import __version__
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nau_py.diagnostic import Diagnostic, Severity
+from nau_py.diagnostics.diagnostic import Diagnostic, Severity
 from nau_py.model.linked import Project
 
 if TYPE_CHECKING:
@@ -28,8 +28,8 @@ def lint(project: Project, models: bool = False) -> list[Diagnostic]:
     ``models``: load its models too, once nothing else is an error, and add what is wrong with
     them: vertices that are not finite, faces that rays leave out, coordinates too large.
     """
-    from nau_py.lint.engine import lint as run
     from nau_py.passes import pass_classes
+    from nau_py.rules.engine import lint as run
     from nau_py.scene.names import default_material_names
 
     found = run(project, pass_classes(), default_material_names(project))
@@ -47,6 +47,6 @@ def plan(project: Project, pipeline: str | None = None) -> Plan:
     """
     from nau_py.graph import make_plan
     from nau_py.passes import pass_classes
-    from nau_py.run.choose import choose_pipeline
+    from nau_py.run.pipeline_choice import choose_pipeline
 
     return make_plan(project, choose_pipeline(project, pipeline), pass_classes())

@@ -23,7 +23,7 @@ def test_the_first_project_renders(folder: Folder) -> None:
 
 
 def test_every_built_in_name_in_the_docs_exists() -> None:
-    from nau_py.model.builtins import BUILTIN_PROGRAMS
+    from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
 
     for page in DOCS.glob("*.md"):
         for name in re.findall(r'file="builtin" proc="(\w+)"', page.read_text()):
@@ -37,6 +37,6 @@ def test_links_lead_somewhere() -> None:
 
 
 def test_the_reference_is_up_to_date() -> None:
-    from nau_py.cli.reference import reference_page
+    from tools.reference import reference_page
 
     assert (DOCS / "reference.md").read_text() == reference_page(), "run scripts/reference"

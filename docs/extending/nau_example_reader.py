@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from nau_py.scene.mesh import Group, Mesh, SceneObject, pad4
-from nau_py.scene.model_error import ModelError
-from nau_py.scene.model_material import ModelMaterial
+from nau_py.scene.readers.model_error import ModelError
+from nau_py.scene.readers.model_material import ModelMaterial
 
 MATERIAL = "Tri"
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nau_py.diagnostic import Change, Diagnostic, Fix, Part
-from nau_py.lint.rule import WARNING, Facts, check, rule
+from nau_py.diagnostics.diagnostic import Change, Diagnostic, Fix, Part
+from nau_py.rules.rule import WARNING, Facts, check, rule
 
 Z001 = rule(
     "Z001",

@@ -5,20 +5,20 @@ from __future__ import annotations
 from pathlib import Path
 
 from nau_py.accuracy.candidate import AS_IT_IS, Candidate
-from nau_py.diagnostic import error
-from nau_py.errors import ProjectError
-from nau_py.formats.edit import Document, Edit, insert_edits, setting_edits, value_edits
+from nau_py.diagnostics.diagnostic import error
+from nau_py.diagnostics.errors import ProjectError
 from nau_py.model.knob import Value, subject
 from nau_py.model.linked import Project
 from nau_py.model.node import Node
 from nau_py.model.passes import Pass
 from nau_py.model.pipeline import Pipeline
+from nau_py.syntax.edit import Document, Edit, insert_edits, setting_edits, value_edits
 
 
 def apply(project: Project, pipeline: Pipeline, setting: Candidate, own: Candidate) -> list[str]:
     """Write what differs from ``own`` into the project file; returns what was written, in words.
 
-    Raises :class:`~nau_py.errors.ProjectError` for a knob that no project file can hold (mask,
+    Raises :class:`~nau_py.ProjectError` for a knob that no project file can hold (mask,
     scale, filter, format); the file is then as it was.
     """
     where = project.file.location

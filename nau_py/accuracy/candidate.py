@@ -7,17 +7,17 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 
-from nau_py.diagnostic import error
-from nau_py.errors import ProjectError
+from nau_py.diagnostics.diagnostic import error
+from nau_py.diagnostics.errors import ProjectError
+from nau_py.diagnostics.location import Location
 from nau_py.model.accuracy import Accuracy
 from nau_py.model.attributes.texture import COLOR_FORMATS
 from nau_py.model.knob import NothingToTurn, Value, subject, traced
 from nau_py.model.linked import Project
-from nau_py.model.location import Location
 from nau_py.model.passes import Pass
 from nau_py.model.pipeline import Pipeline
 from nau_py.passes.frame import RunOptions
-from nau_py.run.choose import choose_pipeline
+from nau_py.run.pipeline_choice import choose_pipeline
 
 AS_IT_IS = "project"
 """The value of a knob that stays as the project has it."""
@@ -53,7 +53,7 @@ def ladders(project: Project, pipeline: Pipeline, given: Mapping[str, str]) -> L
     """The values to try: those ``given`` (knob to text), else the project's, else the default:
     samples 1, 4, 16, 64, depth 1 to 4, and the mask against tracing every pixel.
 
-    Raises :class:`~nau_py.errors.ProjectError` for knobs that do not exist or wrong values.
+    Raises :class:`~nau_py.ProjectError` for knobs that do not exist or wrong values.
     """
     node = project.file.accuracy
     where = project.file.location

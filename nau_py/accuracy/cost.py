@@ -21,15 +21,15 @@ from nau_py.accuracy.refine import refine
 from nau_py.accuracy.report import SCHEMA, Answer, CostReport, ReferenceFacts, Verified
 from nau_py.accuracy.statistics import interval
 from nau_py.accuracy.worth import worth
-from nau_py.diagnostic import Diagnostic, Severity, error
-from nau_py.errors import ProjectError
-from nau_py.lint.engine import lint
+from nau_py.diagnostics.diagnostic import Diagnostic, Severity, error
+from nau_py.diagnostics.errors import ProjectError
 from nau_py.model.knob import traced
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
 from nau_py.passes import pass_classes
 from nau_py.passes.frame import RunOptions
-from nau_py.run.choose import choose_pipeline
+from nau_py.rules.engine import lint
+from nau_py.run.pipeline_choice import choose_pipeline
 from nau_py.scene.names import default_material_names
 
 RUNS = 5
@@ -136,7 +136,7 @@ def cost(
 ) -> CostRun:
     """Measure accuracy and time of ``project`` over the ladders of its knobs.
 
-    Raises :class:`~nau_py.errors.ProjectError` for a project with lint errors and for knobs that do
+    Raises :class:`~nau_py.ProjectError` for a project with lint errors and for knobs that do
     not exist, and what rendering raises.
     """
     diagnostics = lint(project, pass_classes(), default_material_names(project))

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-import nau_py.html as html
-from nau_py.accuracy.chart import Dot, Shape, scatter, to_png, to_svg
+import nau_py.reporting.html as html
 from nau_py.accuracy.cost import CostRun
 from nau_py.accuracy.metrics import F64
 from nau_py.accuracy.report import CostReport, SettingCost
 from nau_py.accuracy.tables import Grid, comparisons, effects, sentences, settings
-from nau_py.html import Markup
-from nau_py.run.output import png
+from nau_py.reporting.chart import Dot, Shape, scatter, to_png, to_svg
+from nau_py.reporting.html import Markup
+from nau_py.reporting.output import png
 
 CROP = 96
 """Side of a crop, pixels."""

@@ -14,9 +14,9 @@ import numpy as np
 import nau_py.version
 from nau_py.accuracy.candidate import Candidate
 from nau_py.accuracy.measure import Bench, Reference
-from nau_py.files import write_bytes
 from nau_py.model.knob import traced
-from nau_py.run.used import used_files
+from nau_py.process.files import write_bytes
+from nau_py.run.used_files import used_files
 
 BATCHES = 2
 """Renders with different seeds that a reference is the mean of: from their difference its own

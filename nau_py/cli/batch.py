@@ -22,8 +22,8 @@ def run_batch(
     quiet: bool,
 ) -> int:
     """Exit status: 0 where every project was rendered, 1 otherwise."""
-    from nau_py.batch.grade import Limits, grade
-    from nau_py.batch.page import page
+    from nau_py.grading.grade import Limits, grade
+    from nau_py.grading.page import page
 
     if not folder.is_dir():
         raise typer.BadParameter(f"'{folder}' is no folder")

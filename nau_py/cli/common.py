@@ -9,12 +9,12 @@ from pathlib import Path
 
 import typer
 
-from nau_py.diagnostic import Diagnostic, error
-from nau_py.errors import NauError, OutputError
-from nau_py.files import write_text
-from nau_py.lint.report import to_text
+from nau_py.diagnostics.diagnostic import Diagnostic, error
+from nau_py.diagnostics.errors import NauError, OutputError
+from nau_py.diagnostics.location import NOWHERE
+from nau_py.diagnostics.reporters import to_text
 from nau_py.model.linked import Project
-from nau_py.model.location import NOWHERE
+from nau_py.process.files import write_text
 
 FAILED = 1
 USAGE = 2
@@ -52,7 +52,7 @@ def guarded(work: Callable[[], int], sources: Mapping[str, str], debug: bool) ->
 def write_result(output: Path | None, text: str) -> None:
     """Write a command's result to a file, whole or not at all, or to stdout.
 
-    Raises :class:`~nau_py.errors.OutputError`.
+    Raises :class:`~nau_py.OutputError`.
     """
     if output is None:
         sys.stdout.write(text)

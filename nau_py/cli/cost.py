@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from nau_py.cli.common import guarded, say, size_of, write_result
-from nau_py.diagnostic import Severity
+from nau_py.diagnostics.diagnostic import Severity
 
 if TYPE_CHECKING:
     from nau_py.accuracy.cost import CostRun
@@ -122,7 +122,7 @@ def run(
 
 def _apply(project: Project, made: CostRun) -> None:
     from nau_py.accuracy.apply import apply
-    from nau_py.run.choose import choose_pipeline
+    from nau_py.run.pipeline_choice import choose_pipeline
 
     if made.chosen is None:
         sys.stderr.write("nothing to write: no setting meets what was asked\n")

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.table import Table
 
-from nau_py.diagnostic import error
-from nau_py.errors import OutputError
-from nau_py.files import write_bytes, write_text
-from nau_py.model.location import NOWHERE
+from nau_py.diagnostics.diagnostic import error
+from nau_py.diagnostics.errors import OutputError
+from nau_py.diagnostics.location import NOWHERE
+from nau_py.process.files import write_bytes, write_text
 
 if TYPE_CHECKING:
     from nau_py.accuracy.cost import CostRun
@@ -84,7 +84,7 @@ def _table(grid: Grid, title: str) -> Table:
 
 def write_all(folder: Path, made: CostRun) -> None:
     """cost.json, cost.csv, cost.html and cost.png. Raises
-    :class:`~nau_py.errors.OutputError`."""
+    :class:`~nau_py.OutputError`."""
     from nau_py.accuracy.page import front_png, page
     from nau_py.accuracy.report import to_csv, to_json
 

@@ -7,7 +7,7 @@ import platform
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 
-from nau_py.errors import DeviceError
+from nau_py.diagnostics.errors import DeviceError
 from nau_py.version import __version__
 
 EXTRAS = {
@@ -37,7 +37,7 @@ def examine() -> int:
         print(f"OpenGL      missing: {problem.diagnostics[0].message}")
         status = 1
     try:
-        from nau_py.raytrace.accel import embree_version
+        from nau_py.raytrace.tracing.accelerator import embree_version
 
         print(f"Embree      {embree_version()}, embreex {_version('embreex')}")
     except ImportError as problem:

@@ -10,8 +10,8 @@ from typing import Annotated
 import typer
 
 from nau_py.cli.common import FAILED, say
-from nau_py.diagnostic import Diagnostic, error
-from nau_py.model.location import Location
+from nau_py.diagnostics.diagnostic import Diagnostic, error
+from nau_py.diagnostics.location import Location
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 _SUFFIXES = (".xml", ".yaml", ".yml", ".mlib")
@@ -56,7 +56,7 @@ def lint(
     fix: Annotated[bool, typer.Option(help="Apply the safe fixes; report what is left.")] = False,
 ) -> None:
     """Check projects: exit status 1 where one has an error."""
-    from nau_py.lint.report import to_json, to_sarif, to_text, worst
+    from nau_py.diagnostics.reporters import to_json, to_sarif, to_text, worst
     from nau_py.version import __version__
 
     files = collect(paths)
@@ -89,8 +89,8 @@ def _check(files: list[Path], models: bool) -> tuple[list[Diagnostic], dict[str,
 
 def _fix(found: list[Diagnostic]) -> int:
     """Apply the safe fixes; returns how many files changed. Says on stderr what was done."""
-    from nau_py.formats.edit import fixed
-    from nau_py.lint.report import shown_path
+    from nau_py.diagnostics.reporters import shown_path
+    from nau_py.syntax.edit import fixed
 
     safe = [next((f for f in d.fixes if f.safe), None) for d in found]
     files, made = fixed(f for f in safe if f is not None)

@@ -18,7 +18,7 @@ def serve(
 ) -> None:
     """Serve an editor: diagnostics, completion, hover, navigation, rename, quick fixes."""
     try:
-        from nau_py.editor.server import make_server
+        from nau_py.lsp.server import make_server
     except ModuleNotFoundError as missing:
         sys.stderr.write(
             f"nau-lsp: '{missing.name}' is missing; pip install 'nau_py[lsp]' brings it\n"

@@ -12,7 +12,7 @@ from typing import Annotated, Any
 import typer
 
 from nau_py.cli.common import USAGE, guarded, say, size_of, write_result
-from nau_py.diagnostic import Severity
+from nau_py.diagnostics.diagnostic import Severity
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
@@ -150,9 +150,9 @@ def run(
     window, (first, last) = size_of(size), _frames(frames)
     given = _parameters(set_ or [])
     import nau_py
-    from nau_py.cli import guard
     from nau_py.cli.progress import progress_bar
     from nau_py.passes.frame import RunOptions
+    from nau_py.process import guard
 
     loaded = nau_py.load(project)
     chosen = programs.value if programs else ""
@@ -172,14 +172,14 @@ def run(
     )
 
     def work() -> int:
-        from nau_py.run.output import check_output
+        from nau_py.reporting.output import check_output
         from nau_py.run.renderer import Renderer
 
         if output is not None:
             check_output(output)
         if watch:
-            from nau_py.cli.table import print_table
             from nau_py.cli.watch import run_watch
+            from nau_py.reporting.pass_table import print_table
 
             return run_watch(
                 project,
@@ -220,8 +220,8 @@ def _render(
     show_mask: bool,
 ) -> list[dict[str, Any]]:
     """Render frames ``first`` to ``last``, or to where the pipelines end; write what is asked."""
-    from nau_py.run.output import write_image, write_targets
-    from nau_py.run.overlay import mask_overlay
+    from nau_py.reporting.output import write_image, write_targets
+    from nau_py.reporting.overlay import mask_overlay
 
     reports = []
     for index in range(first, last + 1):
@@ -241,7 +241,7 @@ def _render(
 
 
 def _finish(reports: list[dict[str, Any]], path: Path | None, quiet: bool, explain: bool) -> None:
-    from nau_py.cli.table import print_table
+    from nau_py.reporting.pass_table import print_table
     from nau_py.run.report import joined
 
     whole = joined(reports)

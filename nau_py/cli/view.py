@@ -49,16 +49,16 @@ def view(
     try:
         import uvicorn
 
-        from nau_py.view.server import make_app
+        from nau_py.viewer.server import make_app
     except ModuleNotFoundError as missing:
         sys.stderr.write(
             f"nau-view: '{missing.name}' is missing; pip install 'nau_py[view]' brings it\n"
         )
         raise typer.Exit(FAILED) from None
     from nau_py.passes.frame import RunOptions
-    from nau_py.view.child import Child
-    from nau_py.view.desk import Desk
-    from nau_py.view.director import Director
+    from nau_py.process.renderer_child import Child
+    from nau_py.viewer.desk import Desk
+    from nau_py.viewer.director import Director
 
     listening = bound(port)
     if listening is None:

@@ -9,11 +9,11 @@ from time import perf_counter, sleep, strftime
 
 from nau_py.api import load
 from nau_py.cli.common import say
-from nau_py.errors import NauError
+from nau_py.diagnostics.errors import NauError
 from nau_py.model.linked import Project
-from nau_py.run.output import write_image
+from nau_py.reporting.output import write_image
+from nau_py.run.reload import Watch
 from nau_py.run.renderer import Frame, Renderer
-from nau_py.run.watch import Watch
 
 PERIOD = 0.02
 """Seconds between two looks at the files."""

@@ -6,9 +6,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from nau_py.diagnostics.location import Location
 from nau_py.effects.facts import MaterialFacts, PassFacts, ProgramFacts
 from nau_py.model.effects import EFFECTS
-from nau_py.model.location import Location
 
 ALPHA_THRESHOLD = 0.25
 """Alpha up to which ``alpha_test`` ignores a hit."""

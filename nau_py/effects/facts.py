@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
-from nau_py.model.location import Location
-from nau_py.model.program_source import strip_decoration
+from nau_py.diagnostics.location import Location
+from nau_py.raytrace.programs.source import strip_decoration
 
 Colour = tuple[float, ...]
 

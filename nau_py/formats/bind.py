@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any, TypeVar, cast
 
+from nau_py.diagnostics.problem import Problem, ProblemKind
 from nau_py.formats.settings import parse_inline, parse_setting, write_setting
 from nau_py.model.attributes import Registry
-from nau_py.model.element import Element
 from nau_py.model.node import (
     Attr,
     Child,
@@ -19,7 +19,6 @@ from nau_py.model.node import (
     Variants,
     file_key,
 )
-from nau_py.model.problem import Problem, ProblemKind
 from nau_py.model.values import (
     Scalar,
     Unconvertible,
@@ -27,6 +26,7 @@ from nau_py.model.values import (
     has_trailing_text,
     to_scalar,
 )
+from nau_py.syntax.element import Element
 
 N = TypeVar("N", bound=Node)
 

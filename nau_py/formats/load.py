@@ -6,24 +6,24 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TypeVar
 
+from nau_py.diagnostics.location import Location
+from nau_py.diagnostics.problem import Problem, ProblemKind
 from nau_py.formats.bind import Binder
 from nau_py.formats.settings import parse_setting
-from nau_py.formats.tolerant import XmlSyntaxError
 from nau_py.formats.upgrade import upgrade
-from nau_py.formats.xml import parse_xml
 from nau_py.formats.yaml import YamlReader, load_yaml
 from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import Registry
-from nau_py.model.element import Element
 from nau_py.model.library import MaterialLibrary
 from nau_py.model.linked import Project
-from nau_py.model.location import Location
 from nau_py.model.node import Node
 from nau_py.model.physics import PhysicsLibrary
-from nau_py.model.problem import Problem, ProblemKind
 from nau_py.model.project import ProjectFile
 from nau_py.model.values import DataType
-from nau_py.paths import resolve
+from nau_py.process.paths import resolve
+from nau_py.syntax.element import Element
+from nau_py.syntax.tolerant import XmlSyntaxError
+from nau_py.syntax.xml import parse_xml
 
 BUILTIN_LIBRARY = Path(__file__).parent / "builtin" / "system.mlib"
 YAML_SUFFIXES = (".yaml", ".yml")

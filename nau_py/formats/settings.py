@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+from nau_py.diagnostics.problem import Problem, ProblemKind
 from nau_py.model.attribute import Attribute
-from nau_py.model.element import Element
 from nau_py.model.node import Setting
-from nau_py.model.problem import Problem, ProblemKind
 from nau_py.model.values import (
     DataType,
     Scalar,
@@ -14,6 +13,7 @@ from nau_py.model.values import (
     has_trailing_text,
     to_scalar,
 )
+from nau_py.syntax.element import Element
 
 _KEYS: tuple[tuple[str, ...], ...] = (
     ("x", "r", "width"),

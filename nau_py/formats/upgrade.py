@@ -5,8 +5,8 @@ Works on elements, before any model is built; positions and written tags are kep
 
 from __future__ import annotations
 
-from nau_py.model.element import Element
-from nau_py.model.problem import Problem, ProblemKind
+from nau_py.diagnostics.problem import Problem, ProblemKind
+from nau_py.syntax.element import Element
 
 _KINDS = {"Closest_Hit": "CLOSEST_HIT", "Any_Hit": "ANY_HIT", "Miss": "MISS"}
 _WRAPPERS = {

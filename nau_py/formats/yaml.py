@@ -13,11 +13,9 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
+from nau_py.diagnostics.location import Location
 from nau_py.formats.settings import keys_of
-from nau_py.formats.tolerant import XmlSyntaxError
 from nau_py.model.attributes import Registry
-from nau_py.model.element import Element
-from nau_py.model.location import Location
 from nau_py.model.node import Attr, Child, Inline, Items, Marker, Node, Settings, Variants, file_key
 from nau_py.model.values import (
     DataType,
@@ -27,6 +25,8 @@ from nau_py.model.values import (
     has_trailing_text,
     to_scalar,
 )
+from nau_py.syntax.element import Element
+from nau_py.syntax.tolerant import XmlSyntaxError
 
 
 def _text(value: object) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Annotated
 
-from nau_py.diagnostic import listing, nearest
+from nau_py.diagnostics.diagnostic import listing, nearest
 from nau_py.model.node import Attr, Node
 
 EFFECTS: dict[str, str] = {

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite
 
-from nau_py.diagnostic import listing, nearest
+from nau_py.diagnostics.diagnostic import listing, nearest
 from nau_py.model.accuracy import KNOBS
 from nau_py.model.linked import Project
 from nau_py.model.mask import MaskPass

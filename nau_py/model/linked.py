@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import nau_py.html as html
+import nau_py.reporting.html as html
+from nau_py.diagnostics.problem import Problem
 from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import Registry
 from nau_py.model.library import DEFAULT_LIBRARY, MaterialLibrary
@@ -15,7 +16,6 @@ from nau_py.model.node import Configured, Node
 from nau_py.model.passes import Pass
 from nau_py.model.physics import PhysicsLibrary
 from nau_py.model.pipeline import Pipeline
-from nau_py.model.problem import Problem
 from nau_py.model.project import Assets, ProjectFile
 from nau_py.model.shader import Shader
 from nau_py.model.state import State

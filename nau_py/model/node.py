@@ -13,9 +13,9 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from nau_py.model.element import Element
-from nau_py.model.location import NOWHERE, Location
+from nau_py.diagnostics.location import NOWHERE, Location
 from nau_py.model.values import DataType, Scalar
+from nau_py.syntax.element import Element
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,12 +6,12 @@ from typing import Annotated
 
 from pydantic import Field
 
-from nau_py.model.element import Element
 from nau_py.model.mask import MaskPass
 from nau_py.model.node import Attr, Child, Items, Node
 from nau_py.model.passes import Pass, SceneReference
 from nau_py.model.raytrace import RaytracePass
 from nau_py.model.values import DataType
+from nau_py.syntax.element import Element
 
 
 class DefaultPass(Pass):

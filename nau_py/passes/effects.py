@@ -14,19 +14,19 @@ from nau_py.effects.facts import (
     ProgramFacts,
     kinds_sent,
 )
-from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.model.effects import ALL, AUTO, wanted
 from nau_py.model.linked import Project
-from nau_py.model.program_source import stand_in
 from nau_py.model.raytrace import BUILTIN, Program, RayMaterial, RaytracePass
 from nau_py.passes.frame import FrameContext, PassRecord
-from nau_py.raytrace.simulated import NEGLIGIBLE, Simulated
+from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.raytrace.programs.source import stand_in
+from nau_py.raytrace.tracing.simulated import NEGLIGIBLE, Simulated
 from nau_py.scene.camera import CameraState
 from nau_py.scene.lights import LightState
 
 if TYPE_CHECKING:
-    from nau_py.raytrace.hits import RayMaterial as TracedMaterial
-    from nau_py.raytrace.tracer import RayCounts
+    from nau_py.raytrace.tracing.batches import RayMaterial as TracedMaterial
+    from nau_py.raytrace.tracing.thread_tracer import RayCounts
 
 
 _COLOURS = (

@@ -10,7 +10,7 @@ import numpy as np
 from nau_py.model.passes import Pass
 from nau_py.passes.default import DefaultClass
 from nau_py.scene.mesh import Group, Mesh, SceneObject, pad4
-from nau_py.scene.model_material import PRIMITIVE_MATERIAL
+from nau_py.scene.readers.model_material import PRIMITIVE_MATERIAL
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord

@@ -49,7 +49,7 @@ class MaskClass:
     def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
         from nau_py.passes.drawing import begin, camera_context, note_pixels, process
         from nau_py.raster.draw import draw, draw_list
-        from nau_py.raytrace.masks import weights
+        from nau_py.raytrace.selection.weights import weights
 
         assert isinstance(pass_, MaskPass)
         frame.camera = frame.world.camera(pass_.camera_name)
@@ -94,7 +94,7 @@ class MaskClass:
         seen: NDArray[np.float32],
         materials: list[tuple[str, RenderMaterial | None]],
     ) -> Any:
-        from nau_py.raytrace.masks import Visible
+        from nau_py.raytrace.selection.weights import Visible
 
         visible = Visible(
             seen[..., :3],

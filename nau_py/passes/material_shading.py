@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nau_py.raytrace.hits import Hits
-from nau_py.raytrace.service import MainThread
-from nau_py.raytrace.vectors import F32
+from nau_py.raytrace.tracing.arrays import F32
+from nau_py.raytrace.tracing.batches import Hits
+from nau_py.raytrace.tracing.main_thread import MainThread
 
 if TYPE_CHECKING:
     from nau_py.raster.semantics import DrawContext

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from nau_py.diagnostic import Diagnostic
+from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.model.linked import Project
 from nau_py.model.pass_classes import RAYTRACE_CLASSES
-from nau_py.raytrace.faults import face_faults
-from nau_py.raytrace.geometry import gather
+from nau_py.raytrace.tracing.face_faults import face_faults
+from nau_py.raytrace.tracing.geometry import gather
 from nau_py.scene.world import World
 
 

@@ -11,7 +11,7 @@ from nau_py.model.linked import Project
 from nau_py.model.pass_classes import QuadPass
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_maps, add_material, add_process, add_target, texture
-from nau_py.scene.model_material import QUAD_MATERIAL
+from nau_py.scene.readers.model_material import QUAD_MATERIAL
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.diagnostic import error
-from nau_py.errors import NauError
+from nau_py.diagnostics.diagnostic import error
+from nau_py.diagnostics.errors import NauError
 from nau_py.graph.contract import Access
 from nau_py.model.library import qualified
 from nau_py.model.linked import Project
@@ -18,7 +18,7 @@ from nau_py.passes.access import buffer
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord
-    from nau_py.raytrace.accel import Accelerator
+    from nau_py.raytrace.tracing.accelerator import Accelerator
 
 RAY_BYTES, HIT_BYTES = 32, 16
 """Origin, tmin, direction, tmax as float32; t, triangle (int32), u, v."""
@@ -78,8 +78,8 @@ def _count(pass_: RayQueryPass, frame: FrameContext, hit_bytes: int) -> int:
 def _accelerator(pass_: RayQueryPass, frame: FrameContext) -> Accelerator:
     """Of the first object of the scene, in its own space, as Nau has it; kept from frame to
     frame."""
-    from nau_py.raytrace.accel import Accelerator
-    from nau_py.raytrace.geometry import RayGeometry
+    from nau_py.raytrace.tracing.accelerator import Accelerator
+    from nau_py.raytrace.tracing.geometry import RayGeometry
 
     name = pass_.scene.name if pass_.scene else None
     objects = frame.world.objects([name or ""])

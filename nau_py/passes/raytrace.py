@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.diagnostic import Diagnostic
+from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
-from nau_py.model.program_source import launches_ptx
 from nau_py.model.raytrace import RaytracePass
 from nau_py.passes.access import add_process, buffer, texture
 from nau_py.passes.ptx.faults import ptx_faults
 from nau_py.passes.stages import Stages
+from nau_py.raytrace.programs.source import launches_ptx
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord
@@ -64,9 +64,9 @@ class RaytraceClass:
             read_mask,
             store_colours,
         )
-        from nau_py.raytrace.adaptive import run_adaptive
-        from nau_py.raytrace.camera import camera_rays, camera_record
-        from nau_py.raytrace.launch import LaunchSettings, Work, run_launch, select
+        from nau_py.raytrace.tracing.adaptive import run_adaptive
+        from nau_py.raytrace.tracing.camera_rays import camera_rays, camera_record
+        from nau_py.raytrace.tracing.dispatch import LaunchSettings, Work, run_launch, select
 
         if not isinstance(pass_, RaytracePass) or pass_.rtEntryPoint is None:
             return

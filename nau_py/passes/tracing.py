@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.diagnostic import warning
-from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, EXCEPTION, MISS, RAY_GENERATION
+from nau_py.diagnostics.diagnostic import warning
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import Program, RaytracePass, RayVariable, component
@@ -20,18 +19,19 @@ from nau_py.passes.drawing import camera_context, pass_value
 from nau_py.passes.effects import decisions, pass_facts
 from nau_py.passes.frame import FrameContext, Session
 from nau_py.passes.material_shading import MaterialShading
-from nau_py.paths import resolve as resolve_path
 from nau_py.plugins import program_files
+from nau_py.process.paths import resolve as resolve_path
 from nau_py.raster.semantics import resolve
-from nau_py.raytrace.accel import Accelerator
-from nau_py.raytrace.faults import face_faults
-from nau_py.raytrace.geometry import RayGeometry, gather
-from nau_py.raytrace.hits import RayLight, RayMaterial
-from nau_py.raytrace.launch import Estimate, LaunchResult, Work
-from nau_py.raytrace.programs import ProgramLoader, TrustRule
-from nau_py.raytrace.scene import ProgramTable, Scene, TexelStore, TraceSettings
-from nau_py.raytrace.service import MainThread
-from nau_py.raytrace.texture import RayTexture
+from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, EXCEPTION, MISS, RAY_GENERATION
+from nau_py.raytrace.tracing.accelerator import Accelerator
+from nau_py.raytrace.tracing.batches import RayLight, RayMaterial
+from nau_py.raytrace.tracing.dispatch import Estimate, LaunchResult, Work
+from nau_py.raytrace.tracing.face_faults import face_faults
+from nau_py.raytrace.tracing.geometry import RayGeometry, gather
+from nau_py.raytrace.tracing.main_thread import MainThread
+from nau_py.raytrace.tracing.program_loader import ProgramLoader, TrustRule
+from nau_py.raytrace.tracing.ray_texture import RayTexture
+from nau_py.raytrace.tracing.scene_tables import ProgramTable, Scene, TexelStore, TraceSettings
 from nau_py.scene.images import ImageError, load_image
 from nau_py.scene.material import RenderMaterial, TextureBinding
 
@@ -62,7 +62,7 @@ class TracingState:
 
     def bind(self, pass_: RaytracePass) -> None:
         """Load the programs of the pass, or load them anew. Raises
-        :class:`~nau_py.errors.ProgramError`; those that were bound then stay."""
+        :class:`~nau_py.ProgramError`; those that were bound then stay."""
         loader = _loader(self.session, {(CLOSEST_HIT, "material"): self.shading})
         entry, label = pass_.rtEntryPoint, self.label
         assert entry is not None

@@ -8,7 +8,7 @@ import numpy as np
 
 from nau_py.model.buffer import Buffer
 from nau_py.model.linked import Project
-from nau_py.paths import resolve
+from nau_py.process.paths import resolve
 
 _BASE_TYPES: dict[str, tuple[type[np.generic], int]] = {
     "INT": (np.int32, 1),

@@ -8,9 +8,9 @@ from typing import Any
 
 import moderngl
 
-from nau_py.diagnostic import error
-from nau_py.errors import DeviceError
-from nau_py.model.location import NOWHERE
+from nau_py.diagnostics.diagnostic import error
+from nau_py.diagnostics.errors import DeviceError
+from nau_py.diagnostics.location import NOWHERE
 
 REQUIRED_VERSION = 450
 HOW_TO_GET = (
@@ -50,5 +50,5 @@ class Device:
 
 @lru_cache(maxsize=1)
 def device() -> Device:
-    """The process's device, made at first use. Raises :class:`~nau_py.errors.DeviceError`."""
+    """The process's device, made at first use. Raises :class:`~nau_py.DeviceError`."""
     return Device()

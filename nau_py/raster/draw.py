@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from nau_py.diagnostic import error
+from nau_py.diagnostics.diagnostic import error
 from nau_py.raster import gl
 from nau_py.raster.gl import GL
 from nau_py.raster.programs import Program

@@ -15,8 +15,8 @@ import moderngl
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.diagnostic import error
-from nau_py.errors import ShaderError
+from nau_py.diagnostics.diagnostic import error
+from nau_py.diagnostics.errors import ShaderError
 from nau_py.model.shader import Shader
 from nau_py.raster import gl
 from nau_py.raster.draw import bind_material, set_uniforms, unbind_material

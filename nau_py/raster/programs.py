@@ -10,11 +10,11 @@ from typing import Any
 import moderngl
 import numpy as np
 
-from nau_py.diagnostic import Diagnostic, error
-from nau_py.errors import ShaderError
-from nau_py.model.location import Location
+from nau_py.diagnostics.diagnostic import Diagnostic, error
+from nau_py.diagnostics.errors import ShaderError
+from nau_py.diagnostics.location import Location
 from nau_py.model.shader import STAGES, Shader
-from nau_py.paths import resolve
+from nau_py.process.paths import resolve
 from nau_py.raster import gl
 from nau_py.raster.tolerant_glsl import adapt, renamed
 
@@ -145,7 +145,7 @@ def _located(
 
 
 def compile_program(ctx: Any, library: str, shader: Shader) -> Program:
-    """Compile and link. Raises :class:`~nau_py.errors.ShaderError`."""
+    """Compile and link. Raises :class:`~nau_py.ShaderError`."""
     label = f"shader '{shader.name}' of library '{library}'"
     sources = {s: src for s in STAGES if (src := read_stage(shader, s)) is not None}
     unsupported = [s for s in ("ts", "ms") if s in sources]

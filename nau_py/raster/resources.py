@@ -7,17 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.diagnostic import Diagnostic, error, warning
-from nau_py.errors import NauError, ProjectError, ShaderError
+from nau_py.diagnostics.diagnostic import Diagnostic, error, warning
+from nau_py.diagnostics.errors import NauError, ProjectError, ShaderError
+from nau_py.diagnostics.location import Location
 from nau_py.model.attributes.texture import channels
 from nau_py.model.buffer import Buffer
 from nau_py.model.linked import Project
-from nau_py.model.location import Location
 from nau_py.model.physics import PhysicsMaterial
 from nau_py.model.target import CubeMapAttachment, RenderTarget
 from nau_py.model.texture import ArrayOfTextures, CubeMap
 from nau_py.model.texture import Texture as TextureNode
-from nau_py.paths import resolve
+from nau_py.process.paths import resolve
 from nau_py.raster import gl
 from nau_py.raster.blocks import UniformBlocks
 from nau_py.raster.buffers import initial_content
@@ -83,7 +83,7 @@ class Resources:
         return wanted if wanted > 1 else 0
 
     def target(self, library: str, name: str) -> Target:
-        """A render target. Raises :class:`~nau_py.errors.ProjectError` where it is incomplete."""
+        """A render target. Raises :class:`~nau_py.ProjectError` where it is incomplete."""
         key = f"{library}::{name}"
         if key not in self._targets:
             node = self.project.render_target(library, name)
@@ -249,7 +249,7 @@ class Resources:
     def reload_programs(self, files: set[Path]) -> int:
         """Compile anew the programs that stand in ``files`` (resolved paths), and say how many.
 
-        Raises :class:`~nau_py.errors.ShaderError` where one does not compile; all are then as they
+        Raises :class:`~nau_py.ShaderError` where one does not compile; all are then as they
         were.
         """
         made: dict[tuple[str, str], Program] = {}

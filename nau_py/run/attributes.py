@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.diagnostic import listing, nearest
+from nau_py.diagnostics.diagnostic import listing, nearest
 from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Setting
 from nau_py.model.passes import Pass

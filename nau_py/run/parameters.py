@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from nau_py.diagnostic import error, listing, nearest
-from nau_py.errors import ProjectError
+from nau_py.diagnostics.diagnostic import error, listing, nearest
+from nau_py.diagnostics.errors import ProjectError
 from nau_py.model.attribute import Attribute
 from nau_py.model.interface import Variable
 from nau_py.model.linked import Project
@@ -40,7 +40,7 @@ def parameters(project: Project) -> list[Parameter]:
 
 def parse(project: Project, name: str, text: str) -> tuple[Parameter, list[float]]:
     """The parameter that is meant, and its numbers. Raises
-    :class:`~nau_py.errors.ProjectError`."""
+    :class:`~nau_py.ProjectError`."""
     known = parameters(project)
     where = project.file.location
     chosen = next((p for p in known if p.name == name), None)

@@ -12,11 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.diagnostic import Diagnostic, Severity, error, warning
-from nau_py.errors import NauError, ProjectError
+from nau_py.diagnostics.diagnostic import Diagnostic, Severity, error, warning
+from nau_py.diagnostics.errors import NauError, ProjectError
 from nau_py.graph.plan import Plan, Step, make_plan
 from nau_py.graph.resource import WINDOW
-from nau_py.lint.engine import lint
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
 from nau_py.model.values import Scalar
@@ -29,12 +28,13 @@ from nau_py.passes.frame import (
     Session,
     no_progress,
 )
-from nau_py.run.output import png
+from nau_py.reporting.notebook import frame_html
+from nau_py.reporting.output import png
+from nau_py.rules.engine import lint
+from nau_py.run.active_pipeline import Turns
 from nau_py.run.parameters import parse
 from nau_py.run.report import machine_facts, make_report
 from nau_py.run.scripts import MAX_REPEATS, Scripts, hooks
-from nau_py.run.show import frame_html
-from nau_py.run.turns import Turns
 from nau_py.scene.names import default_material_names
 from nau_py.scene.viewport import Rect
 from nau_py.scene.world import World
@@ -79,8 +79,8 @@ class Renderer:
     after it. ``size`` overrides the window (width, height), pixels. ``keep_targets`` runs every
     pass that writes something, so that all targets can be read. ``parameters``: values, as text,
     of what the project's interface offers, by name. Raises
-    :class:`~nau_py.errors.ProjectError` for a project with lint errors,
-    :class:`~nau_py.errors.DeviceError` without OpenGL.
+    :class:`~nau_py.ProjectError` for a project with lint errors,
+    :class:`~nau_py.DeviceError` without OpenGL.
     """
 
     def __init__(
@@ -231,7 +231,7 @@ class Renderer:
         """Render up to and including ``frame`` (from 0) and return it.
 
         Frames build on each other: going back starts again from frame 0.
-        Raises :class:`~nau_py.errors.NauError` for what fails while running.
+        Raises :class:`~nau_py.NauError` for what fails while running.
         """
         if frame < 0:
             raise ValueError(f"frame {frame}: frames are counted from 0")
@@ -292,14 +292,14 @@ class Renderer:
 
     def reload_shaders(self, files: set[Path]) -> None:
         """Compile anew the GLSL programs that stand in ``files`` (resolved paths), for the next
-        frame. Raises :class:`~nau_py.errors.ShaderError`; all are then as they were."""
+        frame. Raises :class:`~nau_py.ShaderError`; all are then as they were."""
         self.session.resources.reload_programs(files)
         for state in self.session.tracers.values():
             state.shading.forget()
 
     def reload_ray_programs(self) -> None:
         """Load the ray programs anew, for the next frame. Raises
-        :class:`~nau_py.errors.ProgramError`; those of the pass then stay."""
+        :class:`~nau_py.ProgramError`; those of the pass then stay."""
         tracers = self.session.tracers
         for pass_ in self.pipeline.passes:
             if (pass_.name or "") in tracers:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.diagnostic import Diagnostic, Severity
+from nau_py.diagnostics.diagnostic import Diagnostic, Severity
 from nau_py.model.linked import Project
 from nau_py.passes.frame import PassRecord, Session
 from nau_py.version import __version__

@@ -5,11 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from nau_py.diagnostic import Diagnostic, warning
+from nau_py.diagnostics.diagnostic import Diagnostic, warning
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass, Script
 from nau_py.passes.frame import FrameContext
-from nau_py.paths import resolve
+from nau_py.process.paths import resolve
 from nau_py.run.attributes import Attributes, get_buffer, set_buffer
 from nau_py.run.sandbox import LuaError, Sandbox, available
 

@@ -6,25 +6,25 @@ from pathlib import Path
 
 import numpy as np
 
-from nau_py.diagnostic import Diagnostic, warning
-from nau_py.diagnostic import error as error_at
+from nau_py.diagnostics.diagnostic import Diagnostic, warning
+from nau_py.diagnostics.diagnostic import error as error_at
+from nau_py.diagnostics.location import Location
 from nau_py.model.library import qualified
 from nau_py.model.linked import Project
-from nau_py.model.location import Location
 from nau_py.model.scene import BufferGeometry, Geometry, Scene, Terrain
-from nau_py.paths import resolve
 from nau_py.plugins import READERS, loaded
+from nau_py.process.paths import resolve
 from nau_py.scene import primitives
-from nau_py.scene.assimp import load_assimp
 from nau_py.scene.mesh import Group, Mesh, SceneObject, merge, pad4, transform_mesh
-from nau_py.scene.model_error import ModelError
-from nau_py.scene.model_material import PRIMITIVE_MATERIAL, ModelMaterial
-from nau_py.scene.nbo import load_nbo
-from nau_py.scene.obj import load_obj
-from nau_py.scene.ogre import load_ogre
-from nau_py.scene.patch import load_patch
 from nau_py.scene.poses import PoseTrack
-from nau_py.scene.terrain import load_terrain
+from nau_py.scene.readers.assimp import load_assimp
+from nau_py.scene.readers.model_error import ModelError
+from nau_py.scene.readers.model_material import PRIMITIVE_MATERIAL, ModelMaterial
+from nau_py.scene.readers.nbo import load_nbo
+from nau_py.scene.readers.obj import load_obj
+from nau_py.scene.readers.ogre import load_ogre
+from nau_py.scene.readers.patch import load_patch
+from nau_py.scene.readers.terrain import load_terrain
 from nau_py.scene.transforms import transform_of
 
 ASSIMP_SUFFIXES = [

@@ -11,7 +11,7 @@ from nau_py.model.material import ImageUnits, Material, ValueOf
 from nau_py.model.node import Setting
 from nau_py.model.texture import ArrayOfTextures
 from nau_py.model.values import Scalar
-from nau_py.scene.model_material import DEFAULT_COLOURS, ModelMaterial
+from nau_py.scene.readers.model_material import DEFAULT_COLOURS, ModelMaterial
 
 OLD_DEFAULT = DEFAULT_LIBRARY.lstrip("_")
 Settings = dict[str, Setting]

@@ -6,10 +6,10 @@ import re
 from pathlib import Path
 
 from nau_py.model.linked import Project
-from nau_py.paths import resolve
-from nau_py.scene.model_error import ModelError
-from nau_py.scene.model_material import OBJ_MATERIAL, PRIMITIVE_MATERIAL
-from nau_py.scene.mtl import load_mtl
+from nau_py.process.paths import resolve
+from nau_py.scene.readers.model_error import ModelError
+from nau_py.scene.readers.model_material import OBJ_MATERIAL, PRIMITIVE_MATERIAL
+from nau_py.scene.readers.mtl import load_mtl
 
 _LIBRARY = re.compile(rb"^[ \t]*m\w*[ \t]+(.+?)[ \t\r]*$", re.MULTILINE)
 

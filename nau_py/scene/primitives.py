@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from nau_py.scene.mesh import F32, F64, Group, Mesh, pad4
-from nau_py.scene.model_material import QUAD_MATERIAL
+from nau_py.scene.readers.model_material import QUAD_MATERIAL
 
 _AXIS_MATERIALS = ("__Emission Red", "__Emission Green", "__Emission Blue")
 

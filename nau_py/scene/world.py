@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from nau_py.diagnostic import Diagnostic, listing
+from nau_py.diagnostics.diagnostic import Diagnostic, listing
 from nau_py.model.linked import Project
 from nau_py.model.scene import Scene
 from nau_py.scene.build import SceneBuilder

@@ -22,7 +22,7 @@ from nau_py.accuracy.document import document
 from nau_py.accuracy.page import front_png, page, worst
 from nau_py.accuracy.report import SettingCost, schema, to_csv, to_json
 from nau_py.accuracy.statistics import spread
-from nau_py.run.choose import choose_pipeline
+from nau_py.run.pipeline_choice import choose_pipeline
 from tests.conftest import PROJECTS, ROOT, Folder
 from tests.raytrace.studio import colour, program, square, studio
 

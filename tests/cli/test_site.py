@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from nau_py.cli.gallery import build_gallery, copy_sources, sample_projects
-from nau_py.cli.site import configuration
 from tests.conftest import ROOT, Folder, RayProject
+from tools.gallery import build_gallery, copy_sources, sample_projects
+from tools.site import configuration
 
 
 def test_a_gallery_of_one(ray_project: RayProject, folder: Folder, tmp_path: Path) -> None:

@@ -60,7 +60,7 @@ def requests(
 def _edited(path: Path, reference: str, made: list[Path]) -> str:
     """The project's file; where models are missing, a copy beside it with another one."""
     import nau_py
-    from nau_py.errors import NauError
+    from nau_py.diagnostics.errors import NauError
 
     text = path.read_text(encoding="utf-8", errors="replace")
     changed = text

@@ -118,7 +118,7 @@ def targets(folder: Path, frame: Any) -> tuple[list[Difference], list[str]]:
 def run(request: Request) -> Result:
     """Read, lint, plan, render and compare."""
     import nau_py
-    from nau_py.errors import NauError, ProjectError
+    from nau_py.diagnostics.errors import NauError, ProjectError
 
     result = Result(request.project, request.pipeline)
     try:

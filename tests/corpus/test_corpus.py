@@ -56,7 +56,7 @@ def test_no_attribute_is_lost(path: Path, tag: str, cls: type[Node], tmp_path: P
     reader = Reader()
     raw = reader.element(path, tag, cls)
     assert raw is not None, reader.problems
-    from nau_py.formats.xml import parse_xml
+    from nau_py.syntax.xml import parse_xml
 
     text = path.read_bytes().decode("utf-8")
     assert parse_xml(text, str(path), []).count_attributes() == independent_count(text)

@@ -16,8 +16,8 @@ from PIL import Image
 import nau_py
 from nau_py.model.node import Setting
 from nau_py.model.raytrace import RaytracePass
-from nau_py.raytrace.accel import Accelerator
-from nau_py.raytrace.geometry import RayGeometry, gather
+from nau_py.raytrace.tracing.accelerator import Accelerator
+from nau_py.raytrace.tracing.geometry import RayGeometry, gather
 
 pytestmark = pytest.mark.corpus
 NAU, ORACLE = os.environ.get("NAU_CORPUS"), os.environ.get("NAU_ORACLE")

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from nau_py.diagnostics.location import Location
 from nau_py.effects.analysis import called_for, opaque
 from nau_py.effects.decision import EXACT, UNKNOWN, decide
 from nau_py.effects.facts import (
@@ -16,7 +17,6 @@ from nau_py.effects.facts import (
     kinds_sent,
 )
 from nau_py.model.effects import EFFECTS, wanted
-from nau_py.model.location import Location
 
 HERE = Location("project.xml", 7, 3)
 
@@ -111,7 +111,7 @@ def test_opaque_materials_need_no_any_hit() -> None:
 def test_the_threshold_is_the_engines() -> None:
     """The analysis may not import the engine; both must mean the same alpha."""
     from nau_py.effects import analysis
-    from nau_py.raytrace.kernels import visibility
+    from nau_py.raytrace.kernels.intersect import visibility
 
     assert analysis.ALPHA_THRESHOLD == visibility.ALPHA_THRESHOLD
 

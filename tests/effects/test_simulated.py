@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.simulated import NEGLIGIBLE
+from nau_py.raytrace.tracing.simulated import NEGLIGIBLE
 from tests.conftest import PROJECTS, Folder, RayProject
 from tests.raytrace.studio import colour, program, square, studio
 

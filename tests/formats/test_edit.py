@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 import nau_py
-from nau_py.diagnostic import Change, Part
-from nau_py.formats.edit import (
+from nau_py.diagnostics.diagnostic import Change, Part
+from nau_py.diagnostics.location import Location
+from nau_py.syntax.edit import (
     Document,
     attribute_edits,
     change_edits,
@@ -18,7 +19,6 @@ from nau_py.formats.edit import (
     insert_edits,
     setting_edits,
 )
-from nau_py.model.location import Location
 
 XYZ = [("x", "r"), ("y", "g"), ("z", "b")]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import nau_py
-from nau_py.model.problem import ProblemKind
-from nau_py.paths import resolve
+from nau_py.diagnostics.problem import ProblemKind
+from nau_py.process.paths import resolve
 from tests.conftest import Folder
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from nau_py.formats.tolerant import XmlSyntaxError
-from nau_py.formats.xml import format_xml, parse_xml
-from nau_py.model.element import Element
-from nau_py.model.problem import Problem
+from nau_py.diagnostics.problem import Problem
+from nau_py.syntax.element import Element
+from nau_py.syntax.tolerant import XmlSyntaxError
+from nau_py.syntax.xml import format_xml, parse_xml
 
 
 def parse(text: str) -> Element:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from nau_py.diagnostics.problem import ProblemKind
 from nau_py.model.linked import Project
-from nau_py.model.problem import ProblemKind
 from nau_py.model.raytrace import RaytracePass
 from tests.conftest import Folder
 

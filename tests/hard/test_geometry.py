@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.accel import Accelerator
-from nau_py.raytrace.geometry import RayGeometry
-from nau_py.raytrace.kernels.batch import departures, surface_points
-from nau_py.raytrace.kernels.tables import SCENE
-from nau_py.raytrace.vectors import F32
+from nau_py.raytrace.kernels.core.tables import SCENE
+from nau_py.raytrace.kernels.path.batch_memory import departures, surface_points
+from nau_py.raytrace.tracing.accelerator import Accelerator
+from nau_py.raytrace.tracing.arrays import F32
+from nau_py.raytrace.tracing.geometry import RayGeometry
 from tests.conftest import LAMBERT, Folder, RayProject
 
 RAYS = 100_000

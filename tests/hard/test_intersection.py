@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.accel import Accelerator
-from nau_py.raytrace.geometry import gather
+from nau_py.raytrace.tracing.accelerator import Accelerator
+from nau_py.raytrace.tracing.geometry import gather
 from nau_py.scene.mesh import Group, Mesh, SceneObject, pad4
 from tests.conftest import Folder
 from tests.hard.test_geometry import geometry, surface
@@ -56,7 +56,7 @@ def translated(x: float) -> np.ndarray:  # type: ignore[type-arg]
 @pytest.mark.parametrize("cosine", [1e-3, 1e-5, 1e-7])
 def test_grazing(cosine: float) -> None:
     """Fresnel tends to 1 within [0, 1]; a ray that leaves at such an angle meets nothing."""
-    from nau_py.raytrace.kernels.bsdf import fresnel
+    from nau_py.raytrace.kernels.shading.bsdf import fresnel
 
     for eta in (1.5, 1 / 1.5, 1.0001):
         share, behind = fresnel.py_func(cosine, eta)  # type: ignore[attr-defined]
@@ -70,7 +70,7 @@ def test_grazing(cosine: float) -> None:
     across = np.cross(normal, rng.standard_normal((len(u), 3)))
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     direction = (across + cosine * normal).astype(np.float32)
-    from nau_py.raytrace.kernels.batch import departures
+    from nau_py.raytrace.kernels.path.batch_memory import departures
 
     origin, unit = np.empty((2, len(u), 3), np.float32)
     departures(position, normal, bound, direction, origin, unit)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.kernels.launch import ITEM, accumulate
-from nau_py.raytrace.launch import Estimate
+from nau_py.raytrace.kernels.path.camera_film import ITEM, accumulate
+from nau_py.raytrace.tracing.dispatch import Estimate
 from tests.conftest import PROJECTS, ROOT, Folder
 from tests.raytrace.studio import colour, picture, program, square, studio
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.kernels.bsdf import fresnel
+from nau_py.raytrace.kernels.shading.bsdf import fresnel
 from tests.conftest import Folder, pixel_rays
 from tests.raytrace.studio import box, colour, picture, program, sphere, square, studio
 

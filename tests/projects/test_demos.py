@@ -10,9 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 import nau_py
-from nau_py.raytrace.accel import Accelerator
-from nau_py.raytrace.camera import camera_rays
-from nau_py.raytrace.geometry import gather
+from nau_py.raytrace.tracing.accelerator import Accelerator
+from nau_py.raytrace.tracing.camera_rays import camera_rays
+from nau_py.raytrace.tracing.geometry import gather
 from nau_py.scene.world import World
 from tests.conftest import PROJECTS
 

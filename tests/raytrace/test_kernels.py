@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nau_py.raytrace.kernels.launch import CAMERA, ITEM, SOBOL, STRATA, generate
-from nau_py.raytrace.kernels.sampling import pcg4d
-from nau_py.raytrace.kernels.tables import PATH
-from nau_py.raytrace.random import uniform
-from nau_py.raytrace.texture import RayTexture
+from nau_py.raytrace.kernels.core.sampling import pcg4d
+from nau_py.raytrace.kernels.core.tables import PATH
+from nau_py.raytrace.kernels.path.camera_film import CAMERA, ITEM, SOBOL, STRATA, generate
+from nau_py.raytrace.tracing.random import uniform
+from nau_py.raytrace.tracing.ray_texture import RayTexture
 from tests.conftest import Folder
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.accel import Accelerator
-from nau_py.raytrace.geometry import gather
-from nau_py.raytrace.kernels.launch import ITEM
-from nau_py.raytrace.launch import _parts, bundle_shift
+from nau_py.raytrace.kernels.path.camera_film import ITEM
+from nau_py.raytrace.tracing.accelerator import Accelerator
+from nau_py.raytrace.tracing.dispatch import _parts, bundle_shift
+from nau_py.raytrace.tracing.geometry import gather
 from nau_py.scene.world import World
 from tests.conftest import PROJECTS, Folder, RayProject
 from tests.raytrace.studio import colour, program, sphere, square, studio

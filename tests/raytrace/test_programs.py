@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.model.builtins import BUILTIN_PROGRAMS
-from nau_py.raytrace.builtin import CODES, FUNCTIONS
+from nau_py.raytrace.programs.batch import CODES, FUNCTIONS
+from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
 from tests.conftest import Folder, RayProject
 
 USER = """\

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.adaptive import spread
+from nau_py.raytrace.tracing.adaptive import spread
 from tests.conftest import Folder
 from tests.raytrace.studio import colour, picture, program, square, studio
 

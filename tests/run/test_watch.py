@@ -14,9 +14,9 @@ import pytest
 from PIL import Image
 
 import nau_py
+from nau_py.run.reload import Watch
 from nau_py.run.renderer import Renderer
-from nau_py.run.used import used_files
-from nau_py.run.watch import Watch
+from nau_py.run.used_files import used_files
 from tests.conftest import PROJECTS, Folder, heed_interrupts
 
 PROJECT = """\

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.scene.assimp import load_assimp
-from nau_py.scene.model_error import ModelError
+from nau_py.scene.readers.assimp import load_assimp
+from nau_py.scene.readers.model_error import ModelError
 from nau_py.scene.world import World
 from tests.conftest import Folder
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nau_py.scene.model_error import ModelError
-from nau_py.scene.obj import load_obj
+from nau_py.scene.readers.model_error import ModelError
+from nau_py.scene.readers.obj import load_obj
 from tests.conftest import Folder
 
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nau_py.scene.model_error import ModelError
-from nau_py.scene.nbo import load_nbo
-from nau_py.scene.ogre import load_ogre
-from nau_py.scene.patch import load_patch
-from nau_py.scene.terrain import load_terrain
+from nau_py.scene.readers.model_error import ModelError
+from nau_py.scene.readers.nbo import load_nbo
+from nau_py.scene.readers.ogre import load_ogre
+from nau_py.scene.readers.patch import load_patch
+from nau_py.scene.readers.terrain import load_terrain
 from tests.conftest import Folder
 
 

@@ -8,16 +8,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from nau_py.diagnostic import Diagnostic, error, warning
-from nau_py.model.builtins import MISS
+from nau_py.diagnostics.diagnostic import Diagnostic, error, warning
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import GEOMETRY_KINDS, Program, RaytracePass
 from nau_py.passes.ptx.programs import Modules, find_function, used_programs
 from nau_py.passes.ptx.variables import mentioned, value_bytes
-from nau_py.paths import resolve as resolve_path
-from nau_py.raytrace.ptx.optix6 import declared, is_old
-from nau_py.raytrace.ptx.reader import Module, PtxError
-from nau_py.raytrace.ptx.uses import Uses, uses_of
+from nau_py.process.paths import resolve as resolve_path
+from nau_py.raytrace.programs.catalogue import MISS
+from nau_py.raytrace.ptx.compiler.reader import Module, PtxError
+from nau_py.raytrace.ptx.compiler.uses import Uses, uses_of
+from nau_py.raytrace.ptx.optix.optix6 import declared, is_old
 
 HIT_RECORD, OTHER_RECORD = 112, 16
 """Bytes of the data in a record of hits, and of ray generation and misses."""

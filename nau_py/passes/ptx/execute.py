@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from nau_py.diagnostic import warning
+from nau_py.diagnostics.diagnostic import warning
 from nau_py.model.effects import ALL, AUTO
 from nau_py.model.raytrace import RaytracePass
 from nau_py.passes.ptx.guarded import marks
@@ -12,12 +12,12 @@ from nau_py.passes.ptx.optix import OptixState
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.rt import RtState
 from nau_py.passes.stages import Stages
-from nau_py.raytrace.ptx.frame import BUFFER_INDEX, NO_CALLABLE
-from nau_py.raytrace.ptx.optix6 import STACK_OVERFLOW
+from nau_py.raytrace.ptx.optix.optix6 import STACK_OVERFLOW
+from nau_py.raytrace.ptx.runtime.frame import BUFFER_INDEX, NO_CALLABLE
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord, Session
-    from nau_py.raytrace.ptx.launch import Launched
+    from nau_py.raytrace.ptx.runtime.launch import Launched
 
 _TOLD = 20
 """Printed texts that a report has."""
@@ -50,7 +50,7 @@ class PtxState:
         )
 
     def bind(self, pass_: RaytracePass) -> None:
-        """Compile the programs anew. Raises :class:`~nau_py.errors.ProgramError`; what was bound
+        """Compile the programs anew. Raises :class:`~nau_py.ProgramError`; what was bound
         then stays."""
         programs = Programs(pass_, self.session)
         if programs.old == isinstance(self.environment, OptixState):
@@ -65,8 +65,8 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
     """Launch the pass's programs over its target, or over the pixels that its mask selects."""
     from nau_py.passes.drawing import process, target_and_rect
     from nau_py.passes.tracing import force_mask, read_inputs, read_mask
-    from nau_py.raytrace.launch import select
-    from nau_py.raytrace.ptx.launch import run_launch
+    from nau_py.raytrace.ptx.runtime.launch import run_launch
+    from nau_py.raytrace.tracing.dispatch import select
 
     session = frame.session
     options = session.options

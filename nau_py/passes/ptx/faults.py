@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nau_py.diagnostic import Diagnostic
+from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import RaytracePass
 from nau_py.passes.ptx.contracts import contract_faults

@@ -14,7 +14,7 @@ SLOTS = 64
 
 
 def marks(about: str, width: int) -> NDArray[np.int64] | None:
-    """Where a guarding process sees what is being run (``nau_py.cli.guard``); None without one.
+    """Where a guarding process sees what is being run (``nau_py.process.guard``); None without one.
     ``about``: what a message calls it; ``width``: launch indices of a row, 0 for none."""
     path = os.environ.get(MARKS)
     if not path:

@@ -10,18 +10,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.model.raytrace import GEOMETRY_KINDS, GeometryProgram, RaytracePass
 from nau_py.passes.ptx.guarded import marks
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
 from nau_py.passes.ptx.variables import UNITS
-from nau_py.raytrace.ptx.optix6 import BUFFER, BUFFER_BYTES, PLAIN, STACK_OVERFLOW, TEXTURE
+from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.raytrace.ptx.optix.optix6 import BUFFER, BUFFER_BYTES, PLAIN, STACK_OVERFLOW, TEXTURE
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, Session
     from nau_py.raster.targets import Target
-    from nau_py.raytrace.ptx.launch import Launch
+    from nau_py.raytrace.ptx.runtime.launch import Launch
     from nau_py.scene.material import RenderMaterial
 
 Values = dict[str, "bytes | NDArray[Any] | int"]
@@ -56,9 +56,9 @@ class OptixState:
 
     def bind(self, pass_: RaytracePass, programs: Programs) -> None:
         """Compile the programs, and build what rays meet with them. Raises
-        :class:`~nau_py.errors.ProgramError`; what was bound then stays."""
-        from nau_py.raytrace.ptx.geometry import build_scene
-        from nau_py.raytrace.ptx.launch import record_table, set_program
+        :class:`~nau_py.ProgramError`; what was bound then stays."""
+        from nau_py.raytrace.ptx.runtime.geometry import build_scene
+        from nau_py.raytrace.ptx.runtime.launch import record_table, set_program
 
         layout, types = programs.layout, pass_.ray_types
         intersect, bounds = (_geometry(pass_, kind) for kind in GEOMETRY_KINDS)
@@ -114,7 +114,7 @@ class OptixState:
 
     def _write(self, record: NDArray[np.uint8], values: Values) -> None:
         """Put the variables of ``values`` that programs have into a record."""
-        from nau_py.raytrace.ptx.frame import RECORD_HEADER
+        from nau_py.raytrace.ptx.runtime.frame import RECORD_HEADER
 
         layout = self.programs.layout
         for name, value in values.items():
@@ -135,7 +135,7 @@ class OptixState:
     def begin(self, pass_: RaytracePass, frame: FrameContext, target: Target) -> Launch:
         """The launch of a frame; the variables of the programs are written."""
         from nau_py.passes.drawing import camera_context
-        from nau_py.raytrace.ptx.frame import RECORD_HEADER
+        from nau_py.raytrace.ptx.runtime.frame import RECORD_HEADER
 
         context = camera_context(pass_, frame, target)
         self.resources.begin_frame()
@@ -157,7 +157,7 @@ class OptixState:
         return self._launch((target.width, target.height))
 
     def _launch(self, size: tuple[int, int]) -> Launch:
-        from nau_py.raytrace.ptx.launch import Launch
+        from nau_py.raytrace.ptx.runtime.launch import Launch
 
         return Launch(
             self.generate,
@@ -226,7 +226,7 @@ class OptixState:
 
     def notes(self) -> list[str]:
         """What the report should tell."""
-        from nau_py.raytrace.ptx.geometry import CUSTOM
+        from nau_py.raytrace.ptx.runtime.geometry import CUSTOM
 
         count = self.kinds.count(CUSTOM)
         if not count:

@@ -6,18 +6,18 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from nau_py.diagnostic import Diagnostic, error
-from nau_py.errors import ProgramError
-from nau_py.model.program_source import COMPILED, plain_name
+from nau_py.diagnostics.diagnostic import Diagnostic, error
+from nau_py.diagnostics.errors import ProgramError
 from nau_py.model.raytrace import Program, RaytracePass
-from nau_py.paths import resolve as resolve_path
-from nau_py.raytrace.ptx.compile import CALLABLE, compile_all
-from nau_py.raytrace.ptx.optix6 import Layout, calls, is_old
-from nau_py.raytrace.ptx.reader import Function, Module, PtxError, read_ptx
+from nau_py.process.paths import resolve as resolve_path
+from nau_py.raytrace.programs.source import COMPILED, plain_name
+from nau_py.raytrace.ptx.compiler.compile import CALLABLE, compile_all
+from nau_py.raytrace.ptx.compiler.reader import Function, Module, PtxError, read_ptx
+from nau_py.raytrace.ptx.optix.optix6 import Layout, calls, is_old
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import Session
-    from nau_py.raytrace.ptx.native import Native
+    from nau_py.raytrace.ptx.runtime.native import Native
 
 
 Modules = dict[Path, "Module | PtxError | OSError"]
@@ -65,7 +65,7 @@ def modules_of(pass_: RaytracePass, folder: Path) -> Modules:
 
 class Programs:
     """Machine code of everything that a pass uses. Raises
-    :class:`~nau_py.errors.ProgramError` with what cannot be run."""
+    :class:`~nau_py.ProgramError` with what cannot be run."""
 
     def __init__(self, pass_: RaytracePass, session: Session) -> None:
         from nau_py.passes.tracing import trust_rule
@@ -98,7 +98,7 @@ class Programs:
 
     def native(self, program: Program) -> Native:
         """The machine code of a program's module."""
-        from nau_py.raytrace.ptx.native import Native, NotNative
+        from nau_py.raytrace.ptx.runtime.native import Native, NotNative
 
         path = self._path(program)
         if path not in self.natives:

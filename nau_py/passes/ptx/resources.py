@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.diagnostic import warning
+from nau_py.diagnostics.diagnostic import warning
 from nau_py.model.raytrace import RaytracePass, RayVariable
 from nau_py.model.texture import Texture
-from nau_py.paths import resolve as resolve_path
+from nau_py.process.paths import resolve as resolve_path
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import Session
-    from nau_py.raytrace.kernels.sampler import Image
+    from nau_py.raytrace.kernels.geometry.cuda_texture import Image
     from nau_py.scene.material import TextureBinding
 
 
@@ -63,7 +63,7 @@ class Resources:
         """A texture that passes write, as it is in this frame. ``by_texel``: coordinates count
         texels, the nearest one is read, and the last one goes on."""
         from nau_py.raster import gl
-        from nau_py.raytrace.kernels.sampler import Image
+        from nau_py.raytrace.kernels.geometry.cuda_texture import Image
 
         texture = self.session.resources.texture(name)
         if texture is None:
@@ -120,7 +120,7 @@ class Resources:
 
 
 def _sampled(texels: Any, settings: dict[str, Any] | None, exact: bool) -> Image:
-    from nau_py.raytrace.kernels.sampler import Image
+    from nau_py.raytrace.kernels.geometry.cuda_texture import Image
 
     if settings is None:
         return Image(texels, exact=exact)

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.model.builtins import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.raytrace import Program, RayMaterial, RaytracePass
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
-from nau_py.raytrace.ptx.compile import PARAMETERS
+from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.raytrace.ptx.compiler.compile import PARAMETERS
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, Session
     from nau_py.raster.targets import Target
-    from nau_py.raytrace.ptx.launch import Launch
-    from nau_py.raytrace.ptx.records import Group, Surface
+    from nau_py.raytrace.ptx.optix.records import Group, Surface
+    from nau_py.raytrace.ptx.runtime.launch import Launch
     from nau_py.scene.world import World
 
 _PAD = 2048
@@ -36,7 +36,7 @@ class RtState:
     """
 
     def __init__(self, pass_: RaytracePass, session: Session, programs: Programs) -> None:
-        from nau_py.raytrace.ptx.records import Scene
+        from nau_py.raytrace.ptx.optix.records import Scene
 
         self.session = session
         self.resources = Resources(session, pass_)
@@ -48,10 +48,10 @@ class RtState:
         self.bind(pass_, programs)
 
     def bind(self, pass_: RaytracePass, programs: Programs) -> None:
-        """Compile the programs. Raises :class:`~nau_py.errors.ProgramError`; what was bound then
+        """Compile the programs. Raises :class:`~nau_py.ProgramError`; what was bound then
         stays."""
-        from nau_py.raytrace.ptx.launch import record_table, set_program
-        from nau_py.raytrace.ptx.records import DATA
+        from nau_py.raytrace.ptx.optix.records import DATA
+        from nau_py.raytrace.ptx.runtime.launch import record_table, set_program
 
         types = [t.name or "" for t in pass_.rtRayTypes] or pass_.ray_types
         entries = [pass_.entry([group.material]) for group in self.scene.groups]
@@ -83,7 +83,7 @@ class RtState:
 
     def begin(self, pass_: RaytracePass, frame: FrameContext, target: Target) -> Launch:
         """The launch of a frame; the parameters of the programs are written."""
-        from nau_py.raytrace.ptx.launch import Launch
+        from nau_py.raytrace.ptx.runtime.launch import Launch
 
         data = self._parameters(pass_, frame, target)
         for native in self.programs.natives.values():
@@ -130,7 +130,7 @@ class RtState:
             self.buffer[:] = 0
 
     def _surface(self, name: str) -> Surface:
-        from nau_py.raytrace.ptx.records import Surface
+        from nau_py.raytrace.ptx.optix.records import Surface
 
         found = self.session.world.materials.get(DEFAULT_LIBRARY, name)
         if found is None:
@@ -196,7 +196,7 @@ def _program(entry: RayMaterial | None, types: list[str], index: int, kind: str)
 
 def groups(world: World, pass_: RaytracePass) -> Iterator[Group]:
     """The objects by name, each material by name, in byte order; of a name the last counts."""
-    from nau_py.raytrace.ptx.records import Group
+    from nau_py.raytrace.ptx.optix.records import Group
 
     objects = {o.name: o for o in world.objects(pass_.scene_names)}
     for name in sorted(objects, key=str.encode):

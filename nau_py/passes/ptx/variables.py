@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from nau_py.diagnostic import Diagnostic, error, listing, nearest, warning
+from nau_py.diagnostics.diagnostic import Diagnostic, error, listing, nearest, warning
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import Program, RaytracePass, RayVariable
 from nau_py.passes.ptx.programs import Modules, find_function, used_programs
-from nau_py.paths import resolve as resolve_path
-from nau_py.raytrace.ptx.optix6 import Declared, declared
-from nau_py.raytrace.ptx.reader import Function, Module, PtxError
+from nau_py.process.paths import resolve as resolve_path
+from nau_py.raytrace.ptx.compiler.reader import Function, Module, PtxError
+from nau_py.raytrace.ptx.optix.optix6 import Declared, declared
 
 CAMERA = {"eye": 12, "U": 12, "V": 12, "W": 12, "fov": 4, "top_object": 4}
 """Variables of the context, and their bytes."""

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.raytrace.ptx.compile import compile_module
-from nau_py.raytrace.ptx.launch import Launch, record_table, run_launch
-from nau_py.raytrace.ptx.native import Native
-from nau_py.raytrace.ptx.reader import SIZES, read_ptx
+from nau_py.raytrace.ptx.compiler.compile import compile_module
+from nau_py.raytrace.ptx.compiler.reader import SIZES, read_ptx
+from nau_py.raytrace.ptx.runtime.launch import Launch, record_table, run_launch
+from nau_py.raytrace.ptx.runtime.native import Native
 
 Array = np.ndarray[Any, Any]
 TYPES = {

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nau_py.raytrace.accel import Custom, build_groups
-from nau_py.raytrace.ptx.compile import compile_module
-from nau_py.raytrace.ptx.launch import (
+from nau_py.raytrace.ptx.compiler.compile import compile_module
+from nau_py.raytrace.ptx.compiler.reader import read_ptx
+from nau_py.raytrace.ptx.optix.records import DATA, Group, Scene, Surface
+from nau_py.raytrace.ptx.runtime.launch import (
     TYPES,
     Launch,
     Launched,
@@ -24,9 +25,8 @@ from nau_py.raytrace.ptx.launch import (
     run_launch,
     set_program,
 )
-from nau_py.raytrace.ptx.native import Native
-from nau_py.raytrace.ptx.reader import read_ptx
-from nau_py.raytrace.ptx.records import DATA, Group, Scene, Surface
+from nau_py.raytrace.ptx.runtime.native import Native
+from nau_py.raytrace.tracing.accelerator import Custom, build_groups
 
 COUNT = 33
 X = np.arange(COUNT) / 16 - 1

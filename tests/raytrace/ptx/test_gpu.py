@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nau_py.raytrace.ptx.compile import compile_module
-from nau_py.raytrace.ptx.launch import Launch, record_table, run_launch
-from nau_py.raytrace.ptx.native import Native
-from nau_py.raytrace.ptx.reader import Module, read_ptx
+from nau_py.raytrace.ptx.compiler.compile import compile_module
+from nau_py.raytrace.ptx.compiler.reader import Module, read_ptx
+from nau_py.raytrace.ptx.runtime.launch import Launch, record_table, run_launch
+from nau_py.raytrace.ptx.runtime.native import Native
 from tests.raytrace.ptx.on_gpu import COUNT, ORDER, OUTPUTS, inputs
 
 DATA = Path(__file__).parent / "data"

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from nau_py.raytrace.ptx.compile import compile_all, compile_module
-from nau_py.raytrace.ptx.native import Native, NotNative
-from nau_py.raytrace.ptx.optix6 import Layout, declared
-from nau_py.raytrace.ptx.reader import PtxError, read_ptx
-from nau_py.raytrace.ptx.uses import uses_of
+from nau_py.raytrace.ptx.compiler.compile import compile_all, compile_module
+from nau_py.raytrace.ptx.compiler.reader import PtxError, read_ptx
+from nau_py.raytrace.ptx.compiler.uses import uses_of
+from nau_py.raytrace.ptx.optix.optix6 import Layout, declared
+from nau_py.raytrace.ptx.runtime.native import Native, NotNative
 from tests.raytrace.ptx.bench import HEAD, source
 
 DATA = Path(__file__).parent / "data"
@@ -154,7 +154,7 @@ def test_a_hundred_thousand_broken_texts() -> None:
 
 def test_machine_code_is_kept_and_checked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The second time it comes from the file; one that is not whole is not taken."""
-    monkeypatch.setattr("nau_py.raytrace.ptx.native.cache_folder", lambda: str(tmp_path))
+    monkeypatch.setattr("nau_py.raytrace.ptx.runtime.native.cache_folder", lambda: str(tmp_path))
     text = compile_module(read_ptx(ROOM))
     assert Native(text).address("__miss__blue")
     (kept,) = tmp_path.iterdir()

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nau_py.raytrace.kernels.sampler import Image, sampler
+from nau_py.raytrace.kernels.geometry.cuda_texture import Image, sampler
 
 Array = np.ndarray[Any, Any]
 

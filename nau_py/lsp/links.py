@@ -1,0 +1,149 @@
+"""Where the words of a project lead outside of it: files, procedures of programs, uniforms."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from nau_py.diagnostics.location import Location
+from nau_py.lsp.symbols import Symbol, Symbols
+from nau_py.model.linked import Project
+from nau_py.model.material import Material
+from nau_py.model.node import Attr, Node, file_key
+from nau_py.model.raytrace import BUILTIN, Program
+from nau_py.model.shader import STAGES, Shader
+from nau_py.model.walk import nodes
+from nau_py.process.paths import resolve
+from nau_py.raytrace.programs.source import stand_in, strip_decoration
+
+_UNIFORM = r"\buniform\b[^;{{}}]*?\b({})\b\s*(?:\[[^\]]*\]\s*)?[;=,]"
+_WORD = re.compile(r"\w+")
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A word of the project, and the places that it leads to."""
+
+    word: Symbol
+    targets: tuple[Location, ...]
+
+
+def link_at(symbols: Symbols, file: str, offset: int) -> Link | None:
+    """The link at a character of a project file or library."""
+    for link in _links(symbols.project, file):
+        span = symbols.span(link.word)
+        if span is not None and span[1] <= offset <= span[2]:
+            return link
+    return None
+
+
+def _links(project: Project, file: str) -> Iterator[Link]:
+    for node in nodes(project):
+        if node.location.file != file:
+            continue
+        if isinstance(node, Program) and node.file and node.proc:
+            yield from _program(project, node)
+        for name, marker in node.markers().items():
+            value = getattr(node, name)
+            if not isinstance(marker, Attr) or not marker.file or not isinstance(value, str):
+                continue
+            path = _path(project, node, file_key(name, marker), marker, value)
+            if path is not None and value != BUILTIN:
+                where = node.where(file_key(name, marker))
+                yield Link(Symbol("file", value, value, where), (Location(str(path), 1, 1),))
+        if isinstance(node, Material):
+            yield from _uniforms(project, node)
+
+
+def _path(project: Project, node: Node, key: str, marker: Attr, value: str) -> Path | None:
+    if marker.file == "program":
+        return stand_in(project.folder, value)
+    found = resolve(Path(node.where(key).file or ".").parent, value)
+    return found.best if found.exists else None
+
+
+def _program(project: Project, node: Program) -> Iterator[Link]:
+    path = stand_in(project.folder, node.file or "")
+    line = _line(path, node.proc or "") if path is not None else None
+    if path is not None and line is not None:
+        word = Symbol("procedure", node.proc or "", node.proc or "", node.where("proc"))
+        yield Link(word, (Location(str(path), line, 1),))
+
+
+def _line(path: Path, proc: str) -> int | None:
+    known = procedures(path)
+    return known.get(proc, known.get(strip_decoration(proc)))
+
+
+def procedures(path: Path) -> dict[str, int]:
+    """Functions that a Python file defines, with their lines, by reading it."""
+    try:
+        tree = ast.parse(path.read_bytes(), str(path))
+    except (OSError, SyntaxError, ValueError):
+        return {}
+    return {n.name: n.lineno for n in tree.body if isinstance(n, ast.FunctionDef)}
+
+
+def shader_files(shader: Shader) -> list[Path]:
+    """The GLSL files of a shader."""
+    folder = Path(shader.location.file).parent
+    return [resolve(folder, f).best for stage in STAGES for f in shader.files(stage)]
+
+
+def _shader_of(project: Project, material: Material) -> Shader | None:
+    if material.shader is None:
+        return None
+    for library in project.libraries:
+        if any(m is material for m in library.materials):
+            found = project.shader(library.name or "", material.shader.name or "")
+            return found[1] if found else None
+    return None
+
+
+def _uniforms(project: Project, material: Material) -> Iterator[Link]:
+    shader = _shader_of(project, material)
+    if shader is None or material.shader is None:
+        return
+    files = shader_files(shader)
+    for value in material.shader.values:
+        if value.uniform:
+            targets = tuple(w for f in files for w in declared(f, value.uniform))
+            if targets:
+                word = Symbol("uniform", value.uniform, value.uniform, value.where("uniform"))
+                yield Link(word, targets)
+
+
+def declared(path: Path, uniform: str) -> Iterator[Location]:
+    """Where a GLSL file declares a uniform."""
+    try:
+        text = path.read_text("utf-8", "replace")
+    except OSError:
+        return
+    name = re.split(r"[.\[]", uniform)[0]
+    for found in re.finditer(_UNIFORM.format(re.escape(name)), text):
+        at = found.start(1)
+        yield Location(str(path), text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at))
+
+
+def uses_of_word(project: Project, path: Path, text: str, offset: int) -> list[Location]:
+    """Where a project speaks of the word at a character of one of its GLSL or program files: the
+    sources of a uniform, the bindings of a procedure."""
+    word = next((m[0] for m in _WORD.finditer(text) if m.start() <= offset <= m.end()), "")
+    found: list[Location] = []
+    for node in nodes(project):
+        if isinstance(node, Material) and node.shader is not None:
+            shader = _shader_of(project, node)
+            if shader is not None and path in [f.resolve() for f in shader_files(shader)]:
+                found += [
+                    v.where("uniform")
+                    for v in node.shader.values
+                    if v.uniform and re.split(r"[.\[]", v.uniform)[0] == word
+                ]
+        elif isinstance(node, Program) and node.proc and strip_decoration(node.proc) == word:
+            source = stand_in(project.folder, node.file or "")
+            if source is not None and source.resolve() == path:
+                found.append(node.where("proc"))
+    return found

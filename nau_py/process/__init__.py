@@ -1,0 +1,1 @@
+"""Files and child processes: guarded paths, whole writes, limits, isolation."""

@@ -1,0 +1,1 @@
+"""Decorators, memory, vectors, tables and random numbers of kernels."""

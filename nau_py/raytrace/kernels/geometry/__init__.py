@@ -1,0 +1,1 @@
+"""The surface at a hit and its textures."""

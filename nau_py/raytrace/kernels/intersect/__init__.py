@@ -1,0 +1,1 @@
+"""Rays through Embree, any-hit programs, visibility and shadow rays."""

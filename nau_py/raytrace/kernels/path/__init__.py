@@ -1,0 +1,1 @@
+"""Camera, film, packets of paths and the loop over them."""

@@ -1,0 +1,163 @@
+"""The engine's inner loops: paths are taken in bundles and followed to their ends."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.raytrace.kernels.core.jit import inner, kernel
+from nau_py.raytrace.kernels.core.memory import f32, i64, put_f32, put_i64
+from nau_py.raytrace.kernels.core.tables import (
+    COUNTERS,
+    LANES,
+    copy_path,
+    path_at,
+    set_heading,
+    set_origin,
+)
+from nau_py.raytrace.kernels.path.camera_film import reset, start
+from nau_py.raytrace.kernels.path.packet import follow
+
+
+@inner
+def keep(tile: Any, saved: NDArray[Any]) -> None:
+    """Note the counters, in case what follows must be undone."""
+    for k in range(COUNTERS):
+        saved[k] = i64(tile.counts, k)
+
+
+@inner
+def undo(tile: Any, first: int, waiting: int, saved: NDArray[Any]) -> None:
+    """Back to where ``keep`` was called, to be done again from ``first`` on."""
+    for k in range(COUNTERS):
+        put_i64(tile.counts, k, saved[k])
+    tile.next = first
+    tile.waiting = waiting
+
+
+@kernel
+def advance(
+    scenes: NDArray[Any],
+    ray_type: int,
+    queue: NDArray[Any],
+    tiles: NDArray[Any],
+) -> None:
+    """Follow the paths of ``queue`` from ``next`` on; add what they bring to the radiance.
+
+    ``scenes`` and ``tiles`` hold one record each. Paths of the same pixels are followed together.
+    Where the queue for Python is full, what these paths did is undone, ``next`` is the first of
+    them, and the kernel returns.
+    """
+    scene, tile = scenes[0], tiles[0]
+    size = queue.shape[0]
+    before = np.empty((size, 4), np.float32)
+    saved = np.empty(COUNTERS, np.int64)
+    first = tile.next
+    while first < size:
+        waiting = tile.waiting
+        keep(tile, saved)
+        key = queue[first].pixel >> tile.shift
+        stop = first
+        while stop < size and queue[stop].pixel >> tile.shift == key:
+            for k in range(4):
+                before[stop, k] = f32(tile.radiance, 4 * queue[stop].index + k)
+            stop += 1
+        for begin in range(first, stop, LANES):
+            bundle = min(stop - begin, LANES)
+            for which in range(bundle):
+                copy_path(path_at(tile.work, which), queue[begin + which])
+            follow(scene, tile, ray_type, bundle)
+        if tile.waiting > tile.capacity:
+            for i in range(first, stop):
+                for k in range(4):
+                    put_f32(tile.radiance, 4 * queue[i].index + k, before[i, k])
+            undo(tile, first, waiting, saved)
+            return
+        first = stop
+    tile.next = size
+
+
+@kernel
+def send(
+    scenes: NDArray[Any],
+    ray_type: int,
+    origin: NDArray[np.float32],
+    direction: NDArray[np.float32],
+    tmax: NDArray[np.float32],
+    pixel: NDArray[np.uint32],
+    sample: NDArray[np.uint32],
+    depth: int,
+    kind: int,
+    initial: float,
+    tiles: NDArray[Any],
+) -> None:
+    """``advance`` for the rays that a Python program sends: ray i brings result i. ``tmax`` has one
+    entry, or one a ray."""
+    scene, tile = scenes[0], tiles[0]
+    size = origin.shape[0]
+    saved = np.empty(COUNTERS, np.int64)
+    first = tile.next
+    while first < size:
+        waiting = tile.waiting
+        keep(tile, saved)
+        key = pixel[first] >> tile.shift
+        stop = first
+        while stop < size and pixel[stop] >> tile.shift == key:
+            stop += 1
+        for begin in range(first, stop, LANES):
+            bundle = min(stop - begin, LANES)
+            for which in range(bundle):
+                path, i = path_at(tile.work, which), begin + which
+                reset(path)
+                set_origin(path, (origin[i, 0], origin[i, 1], origin[i, 2]))
+                set_heading(path, (direction[i, 0], direction[i, 1], direction[i, 2]))
+                path.tmax = tmax[i if tmax.shape[0] > 1 else 0]
+                path.index = i
+                path.pixel = pixel[i]
+                path.sample = sample[i]
+                path.depth = depth
+                path.kind = kind
+                path.initial = initial
+            follow(scene, tile, ray_type, bundle)
+        if tile.waiting > tile.capacity:
+            for i in range(4 * first, 4 * stop):
+                put_f32(tile.radiance, i, 0.0)
+            undo(tile, first, waiting, saved)
+            return
+        first = stop
+    tile.next = size
+
+
+@kernel
+def march(
+    scenes: NDArray[Any],
+    cameras: NDArray[Any],
+    lens: int,
+    rule: int,
+    side: int,
+    width: int,
+    items: NDArray[Any],
+    tiles: NDArray[Any],
+) -> None:
+    """``generate`` and ``advance`` in one, for programs that are all compiled: no queue."""
+    scene, tile = scenes[0], tiles[0]
+    at, size, i, taken = 0, 0, 0, 0
+    count = items.shape[0]
+    while i < count:
+        flat = int(items[i].pixel)
+        if taken < items[i].count:
+            path = path_at(tile.work, size)
+            number = int(items[i].first) + taken
+            start(cameras[0], lens, rule, side, scene.seed, width, flat, number, at, path)
+            at += 1
+            size += 1
+            taken += 1
+        if taken >= items[i].count:
+            i += 1
+            taken = 0
+        apart = i == count or int(items[i].pixel) >> tile.shift != flat >> tile.shift
+        if size == LANES or apart:
+            follow(scene, tile, 0, size)
+            size = 0

@@ -1,0 +1,1 @@
+"""Scattering, lights and the built-in closest-hit programs."""

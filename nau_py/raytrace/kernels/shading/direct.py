@@ -1,0 +1,261 @@
+"""Shading that ends a path: the default look, Phong, lights with shape, ambient occlusion.
+
+Shadow rays are not traced here: they are collected for the bundle (``shadows.py``), or, where
+their programs are Python's, go to the deferred queue with the light that they would bring.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from nau_py.raytrace.kernels.core.codes import LAMBERT, PHONG
+from nau_py.raytrace.kernels.core.jit import V3, inner
+from nau_py.raytrace.kernels.core.memory import f32, i8, put_f32
+from nau_py.raytrace.kernels.core.sampling import cosine_hemisphere, sobol2
+from nau_py.raytrace.kernels.core.tables import (
+    AMBIENT,
+    OCCLUSION,
+    RECTANGLE,
+    SHADOW,
+    SKIPPED,
+    copy_path,
+    diffuse_of,
+    emission_of,
+    heading_of,
+    light_at,
+    path_at,
+    set_heading,
+    set_origin,
+    set_weight,
+    specular_of,
+    weight_of,
+)
+from nau_py.raytrace.kernels.core.vec import (
+    basis,
+    dot,
+    in_frame,
+    plus,
+    reflected,
+    scaled,
+    times,
+    unit,
+)
+from nau_py.raytrace.kernels.geometry.surface import facing, spawn
+from nau_py.raytrace.kernels.geometry.texture import RGBA
+from nau_py.raytrace.kernels.intersect.embree import INFINITE
+from nau_py.raytrace.kernels.intersect.shadow_rays import collect
+from nau_py.raytrace.kernels.intersect.visibility import (
+    count,
+    shadow_type_of,
+    skips,
+    sound,
+    visibility,
+)
+from nau_py.raytrace.kernels.shading.lights import arriving
+
+AMBIENT_FACTOR = 0.3
+LIGHT_DIMENSION = 0x1000
+"""First dimension of light samples: 64 lights a depth."""
+HIT_DIMENSIONS = 16
+"""Dimensions of a hit, by depth."""
+
+
+@inner
+def rgb(c: RGBA) -> V3:
+    return c[0], c[1], c[2]
+
+
+@inner
+def add(tile: Any, path: Any, colour: V3, alpha: float) -> None:
+    """Add what arrives at the end of ``path``."""
+    at = 4 * path.index
+    w, c = weight_of(path), banded(path, colour)
+    put_f32(tile.radiance, at, f32(tile.radiance, at) + w[0] * c[0])
+    put_f32(tile.radiance, at + 1, f32(tile.radiance, at + 1) + w[1] * c[1])
+    put_f32(tile.radiance, at + 2, f32(tile.radiance, at + 2) + w[2] * c[2])
+    put_f32(tile.radiance, at + 3, f32(tile.radiance, at + 3) + w[3] * alpha)
+
+
+@inner
+def banded(path: Any, colour: V3) -> V3:
+    """The colour as the path sees it: one band of it after a fluorescent surface."""
+    if path.band < 0:
+        return colour
+    b = colour[path.band]
+    return b, b, b
+
+
+@inner
+def defer(tile: Any, path: Any, status: int) -> Any:
+    """Queue ``path`` for Python; returns the copy. ``waiting`` counts on past a full queue."""
+    at = min(tile.waiting, tile.capacity)
+    tile.waiting += 1
+    late = path_at(tile.deferred, at)
+    copy_path(late, path)
+    late.status = status
+    return late
+
+
+@inner
+def light_term(
+    scene: Any,
+    tile: Any,
+    ray_type: int,
+    path: Any,
+    source: int,
+    origin: V3,
+    direction: V3,
+    tmax: float,
+    light: V3,
+) -> None:
+    """Add ``light`` if ``origin`` sees it along ``direction``, up to ``tmax`` lengths of it.
+    ``source``: the number of the light."""
+    if light[0] == 0.0 and light[1] == 0.0 and light[2] == 0.0:
+        return
+    w, c = weight_of(path), banded(path, light)
+    arriving = (w[0] * c[0], w[1] * c[1], w[2] * c[2])
+    if skips(scene, SHADOW):
+        count(tile, SKIPPED + SHADOW)
+        at = 4 * path.index
+        for k in range(3):
+            put_f32(tile.radiance, at + k, f32(tile.radiance, at + k) + arriving[k])
+        return
+    if i8(scene.deferred_shadows, shadow_type_of(scene, ray_type)) != 0:
+        late = defer(tile, path, OCCLUSION)
+        set_origin(late, origin)
+        set_heading(late, direction)
+        late.tmax = tmax
+        set_weight(late, (arriving[0], arriving[1], arriving[2], 0.0))
+        return
+    collect(scene, tile, ray_type, path, source, origin, direction, tmax, arriving)
+
+
+@inner
+def default_look(
+    scene: Any,
+    tile: Any,
+    ray_type: int,
+    code: int,
+    path: Any,
+    origin: V3,
+    normal: V3,
+    material: Any,
+    texel: V3,
+) -> None:
+    """Nau's default material (nau-format.md, 8.5) by the first light, with shadows where the pass
+    has a ray type for them; for Phong's models with the highlight SPECULAR cos^SHININESS. A light
+    with a shape is the mean over its points."""
+    diffuse = rgb(diffuse_of(material))
+    rest = scaled(diffuse, AMBIENT_FACTOR)
+    if material.texture >= 0:
+        rest = (AMBIENT_FACTOR, AMBIENT_FACTOR, AMBIENT_FACTOR)
+    add(tile, path, times(plus(rest, emission_of(material)), texel), 1.0)
+    if scene.lights_count == 0:
+        return
+    light = light_at(scene.lights, 0)
+    samples = light_samples(scene, light)
+    for k in range(samples):
+        number = np.uint32(path.sample * samples + k)
+        dimension = np.uint32(LIGHT_DIMENSION + path.depth * 64)
+        x, y = 0.5, 0.5
+        if light.shape >= RECTANGLE:
+            x, y = sobol2(scene.seed, path.pixel, number, dimension)
+        to, distance, colour = arriving(light, origin, x, y)
+        unit_to = unit(to)
+        cosine = dot(normal, unit_to)
+        if not (distance > 0.0 and cosine > 0.0):
+            continue
+        colour = scaled(colour, 1.0 / samples)
+        lit = times(scaled(times(diffuse, colour), cosine), texel)
+        if code != LAMBERT:
+            away = scaled(heading_of(path), -1.0)
+            if code == PHONG:
+                lobe = dot(reflected(scaled(unit_to, -1.0), normal), away)
+            else:
+                lobe = dot(unit(plus(unit_to, away)), normal)
+            if lobe > 0.0:
+                shine = lobe ** float(material.shininess)
+                lit = plus(lit, scaled(times(specular_of(material), colour), shine))
+        if scene.shadow_type < 0:
+            add(tile, path, lit, 0.0)
+        else:
+            tmax = 1.0 if distance < INFINITE else INFINITE
+            light_term(scene, tile, ray_type, path, 0, origin, to, tmax, lit)
+
+
+@inner
+def light_samples(scene: Any, light: Any) -> int:
+    """Shadow rays for one light: more than one only where it has an area."""
+    return max(int(scene.light_samples), 1) if light.shape >= RECTANGLE else 1
+
+
+@inner
+def direct_light(
+    scene: Any,
+    tile: Any,
+    ray_type: int,
+    path: Any,
+    origin: V3,
+    normal: V3,
+    albedo: V3,
+) -> None:
+    """What every light of the pass brings to a diffuse surface, with shadows."""
+    for index in range(scene.lights_count):
+        light = light_at(scene.lights, index)
+        samples = light_samples(scene, light)
+        dimension = np.uint32(LIGHT_DIMENSION + path.depth * 64 + index)
+        for k in range(samples):
+            number = np.uint32(path.sample * samples + k)
+            x, y = sobol2(scene.seed, path.pixel, number, dimension)
+            to, distance, colour = arriving(light, origin, x, y)
+            length = distance if distance < INFINITE else 1.0
+            if not length > 0.0:
+                continue
+            cosine = dot(normal, to) / length
+            if not cosine > 0.0:
+                continue
+            tmax = 1.0 if distance < INFINITE else INFINITE
+            brought = scaled(times(albedo, colour), cosine / samples)
+            light_term(scene, tile, ray_type, path, index, origin, to, tmax, brought)
+
+
+@inner
+def ambient_occlusion(
+    scene: Any,
+    tile: Any,
+    ray_type: int,
+    path: Any,
+    position: V3,
+    face: V3,
+    bound: float,
+    normal: V3,
+    albedo: V3,
+) -> None:
+    """Cosine-weighted sky visibility within the pass's OCCLUSION_DISTANCE, times the albedo."""
+    samples = max(int(scene.light_samples), 1)
+    s, t = basis(normal)
+    geometric = facing(face, heading_of(path))
+    open_ = 0.0
+    for k in range(samples):
+        number = np.uint32(path.sample * samples + k)
+        dimension = np.uint32(HIT_DIMENSIONS * path.depth)
+        x, y = sobol2(scene.seed, path.pixel, number, dimension)
+        d = cosine_hemisphere(x, y)
+        to = in_frame(s, t, normal, d[0], d[1], d[2])
+        if not dot(geometric, to) > 0.0:
+            continue
+        origin = spawn(position, face, bound, to)
+        if not sound(tile, origin, to):
+            continue
+        if skips(scene, AMBIENT):
+            count(tile, SKIPPED + AMBIENT)
+            open_ += 1.0
+            continue
+        count(tile, AMBIENT)
+        open_ += visibility(
+            scene, tile, shadow_type_of(scene, ray_type), origin, to,
+            float(scene.occlusion_distance), path.pixel, path.sample, int(path.depth),
+        )  # fmt: skip
+    add(tile, path, scaled(albedo, open_ / samples), 1.0)

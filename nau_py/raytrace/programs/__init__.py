@@ -1,0 +1,1 @@
+"""Ray programs that nau_py brings, and where a project's own ones are."""

@@ -1,0 +1,57 @@
+"""Where the source of a program is, without running it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from nau_py.model.raytrace import RaytracePass
+from nau_py.plugins import PREFIX, program_files
+from nau_py.process.paths import resolve
+
+COMPILED = ".ptx"
+_DECORATIONS = ("raygen", "closesthit", "anyhit", "miss", "exception", "intersection")
+
+
+_MANGLED = re.compile(r"_Z(\d+)(\w+)")
+
+
+def plain_name(name: str) -> str:
+    """An entry point as C++ spells it (Itanium C++ ABI, 5.1: ``_Z``, a length, the name, for a
+    function outside of namespaces)."""
+    found = _MANGLED.match(name)
+    return found[2][: int(found[1])] if found else name
+
+
+def strip_decoration(proc: str) -> str:
+    """``__closesthit__radiance`` without OptiX's decoration: ``radiance``."""
+    if proc.startswith("__"):
+        kind, _, rest = proc[2:].partition("__")
+        if kind in _DECORATIONS and rest:
+            return rest
+    return proc
+
+
+def stand_in(folder: Path, file: str) -> Path | None:
+    """The Python file behind ``file``: itself, or the sibling ``x.py`` of an ``x.ptx``.
+
+    ``plugin:NAME`` names the programs of a plug-in. None where there is neither.
+    """
+    if file.startswith(PREFIX):
+        return program_files().get(file.removeprefix(PREFIX))
+    found = resolve(folder, file)
+    suffix = found.path.suffix.lower()
+    if suffix != ".py":
+        if suffix != COMPILED:
+            return None
+        sibling = resolve(folder, str(Path(file.replace("\\", "/")).with_suffix(".py")))
+        return sibling.best if sibling.exists else None
+    return found.best if found.exists else None
+
+
+def launches_ptx(pass_: RaytracePass, folder: Path, programs: str = "") -> bool:
+    """Whether a pass runs compiled programs: its ray generation program is one that is there.
+    ``programs``: ``py`` asks for the Python files beside them instead."""
+    entry = pass_.rtEntryPoint
+    file = (entry.rayGen.file if entry and entry.rayGen else None) or ""
+    return programs != "py" and file.lower().endswith(COMPILED) and resolve(folder, file).exists

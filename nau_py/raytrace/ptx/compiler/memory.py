@@ -1,0 +1,75 @@
+"""Loads, stores and textures (PTX ISA, 9.7.9.8 to 9.7.10). All spaces are one."""
+
+from __future__ import annotations
+
+from nau_py.raytrace.ptx.compiler.arithmetic import Handler, type_in
+from nau_py.raytrace.ptx.compiler.function import Writer, llvm
+from nau_py.raytrace.ptx.compiler.reader import SIZES
+
+_TEXTURES = {"1d": 1, "2d": 2, "3d": 3}
+
+
+def load(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    type_ = type_in(w, words)
+    pointer = w.pointer(operands[1])
+    for index, target in enumerate(w.vector(operands[0])):
+        place = pointer
+        if index:
+            place = w.value(f"getelementptr i8, ptr {pointer}, i64 {index * SIZES[type_]}")
+        volatile = "volatile " if "volatile" in words else ""
+        value = w.value(f"load {volatile}{llvm(type_)}, ptr {place}, align 1")
+        w.write(target, value, type_)
+
+
+def store(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    type_ = type_in(w, words)
+    pointer = w.pointer(operands[0])
+    values = [w.read(part, type_) for part in w.vector(operands[1])]
+    for index, value in enumerate(values):
+        place = pointer
+        if index:
+            place = w.value(f"getelementptr i8, ptr {pointer}, i64 {index * SIZES[type_]}")
+        volatile = "volatile " if "volatile" in words else ""
+        w.emit(f"store {volatile}{llvm(type_)} {value}, ptr {place}, align 1")
+
+
+def texture(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    """``tex.2d.v4.f32.f32 {r,g,b,a}, [handle, {x, y}]``: by the runtime's sampler. Textures have
+    one level here, so one that is asked for, or gradients, change nothing."""
+    if words[0] in ("base", "level", "grad"):
+        words = words[1:]
+    kind, coordinates = words[0], words[-1]
+    if kind not in _TEXTURES or words[1:-1] != ["v4", "f32"] or coordinates not in ("f32", "s32"):
+        raise w.fail("textures are read in 1, 2 or 3 dimensions, four floats by floats or integers")
+    inside = operands[1].strip("[]")
+    handle, _, place = (part.strip() for part in inside.partition(","))
+    at = [w.read(p.strip(), coordinates) for p in place.strip("{}").split(",")]
+    if coordinates == "s32":
+        at = [w.value(f"sitofp i32 {value} to float") for value in at]
+    at = [*at[: _TEXTURES[kind]], "0.0", "0.0"][:3]
+    held = w.place(handle) if w.register(handle) is None else None  # a variable of OptiX 6
+    number = w.read(handle, "u64") if held is None else w.value(f"load i64, ptr {held}")
+    out = w.stack("float", 4)
+    listed = ", ".join(f"float {value}" for value in at)
+    w.emit(f"call void @nau.texture(i64 {number}, i32 {_TEXTURES[kind]}, {listed}, ptr {out})")
+    for index, target in enumerate(w.vector(operands[0])):
+        element = w.value(f"getelementptr float, ptr {out}, i64 {index}")
+        w.write(target, w.value(f"load float, ptr {element}"), "f32")
+
+
+def nothing(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    """Hints and barriers: one thread does one launch index."""
+
+
+MEMORY: dict[str, Handler] = {
+    "ld": load,
+    "ldu": load,
+    "st": store,
+    "tex": texture,
+    "prefetch": nothing,
+    "prefetchu": nothing,
+    "membar": nothing,
+    "fence": nothing,
+    "bar": nothing,
+    "barrier": nothing,
+}

@@ -1,0 +1,178 @@
+"""Arithmetic that rounds towards zero, down or up (``.rz``, ``.rm``, ``.rp``; PTX ISA, 9.7.3).
+
+The nearest result is moved by one unit where the exact one lies on the other side of what is asked
+for. On which side it lies, an exact error says: of sums by TwoSum, of products, quotients and roots
+by a fused multiply-add; those of float32 are taken in float64 (Muller et al., *Handbook of
+Floating-Point Arithmetic*, 2nd edition, chapters 4 and 5).
+"""
+
+from __future__ import annotations
+
+from nau_py.raytrace.ptx.compiler.function import Writer, llvm
+from nau_py.raytrace.ptx.compiler.reader import SIZES
+
+MODES = ("rz", "rm", "rp")
+
+
+def mode_of(words: list[str]) -> str:
+    """The direction that an opcode asks for; empty for the nearest."""
+    return next((word for word in words if word in MODES), "")
+
+
+_Exact = tuple[str, str]
+"""A result of higher precision: the sum of two doubles, the larger one first."""
+
+
+def rounded(w: Writer, words: list[str], type_: str, how: str, values: list[str]) -> str:
+    """``how`` (add, sub, mul, div, sqrt, fma) of floats, by the rounding that an opcode names."""
+    mode = mode_of(words)
+    return directed(w, mode, type_, how, values) if mode else nearest(w, type_, how, values)
+
+
+def nearest(w: Writer, type_: str, how: str, values: list[str]) -> str:
+    t = llvm(type_)
+    if how in ("sqrt", "fma"):
+        listed = ", ".join(f"{t} {value}" for value in values)
+        return w.value(f"call {t} @llvm.{how}.{type_}({listed})")
+    return w.value(f"f{how} {t} {values[0]}, {values[1]}")
+
+
+def directed(w: Writer, mode: str, type_: str, how: str, values: list[str]) -> str:
+    """As :func:`rounded`, by ``mode``."""
+    t = llvm(type_)
+    if how == "fma" and type_ == "f64":
+        raise w.fail("a fused multiply-add of doubles rounds to the nearest only")
+    if how == "sub":
+        values = [values[0], w.value(f"fneg {t} {values[1]}")]
+        how = "add"
+    near = nearest(w, type_, how, values)
+    wide = values
+    if type_ == "f32":
+        wide = [w.value(f"fpext float {value} to double") for value in values]
+    exact = _exact(w, how, wide)
+    mine = near if type_ == "f64" else w.value(f"fpext float {near} to double")
+    above, below = _sides(w, exact, mine)
+    if type_ == "f64":
+        above, below = _of_overflow(w, how, values, near, above, below)
+    found = stepped(w, mode, type_, near, above, below)
+    if mode == "rm" and how in ("add", "fma"):
+        terms = wide if how == "add" else [w.value(f"fmul double {wide[0]}, {wide[1]}"), wide[2]]
+        found = _zero_down(w, type_, found, terms)
+    return found
+
+
+def _zero_down(w: Writer, type_: str, found: str, terms: list[str]) -> str:
+    """Of a sum that is exactly 0: rounded down it is -0, unless both terms are +0 (IEEE 754)."""
+    t, bits = llvm(type_), f"i{8 * SIZES[type_]}"
+    signs = [
+        w.value(f"icmp slt i64 {w.value(f'bitcast double {term} to i64')}, 0") for term in terms
+    ]
+    zero = w.value(f"fcmp oeq {t} {found}, 0.0")
+    turned = w.value(f"and i1 {zero}, {w.value(f'or i1 {signs[0]}, {signs[1]}')}")
+    minus = w.value(f"bitcast {bits} {-(1 << (8 * SIZES[type_] - 1))} to {t}")
+    return w.value(f"select i1 {turned}, {t} {minus}, {t} {found}")
+
+
+def _fused(w: Writer, a: str, b: str, c: str) -> str:
+    return w.value(f"call double @llvm.fma.f64(double {a}, double {b}, double {c})")
+
+
+def _sum(w: Writer, a: str, b: str) -> _Exact:
+    """Knuth's TwoSum."""
+    s = w.value(f"fadd double {a}, {b}")
+    part = w.value(f"fsub double {s}, {a}")
+    rest = w.value(f"fsub double {s}, {part}")
+    low = w.value(f"fsub double {b}, {part}")
+    other = w.value(f"fsub double {a}, {rest}")
+    return s, w.value(f"fadd double {low}, {other}")
+
+
+def _exact(w: Writer, how: str, values: list[str]) -> _Exact:
+    if how == "add":
+        return _sum(w, values[0], values[1])
+    if how == "fma":  # of float32: the product is exact
+        return _sum(w, w.value(f"fmul double {values[0]}, {values[1]}"), values[2])
+    if how == "mul":
+        p = w.value(f"fmul double {values[0]}, {values[1]}")
+        minus = w.value(f"fneg double {p}")
+        return p, _fused(w, values[0], values[1], minus)
+    if how == "sqrt":
+        s = w.value(f"call double @llvm.sqrt.f64(double {values[0]})")
+        minus = w.value(f"fneg double {s}")
+        return s, _fused(w, minus, s, values[0])
+    q = w.value(f"fdiv double {values[0]}, {values[1]}")
+    minus = w.value(f"fneg double {q}")
+    rest = _fused(w, minus, values[1], values[0])
+    negative = w.value(f"fcmp olt double {values[1]}, 0.0")
+    turned = w.value(f"fneg double {rest}")
+    low = w.value(f"select i1 {negative}, double {turned}, double {rest}")
+    return q, low
+
+
+def _sides(w: Writer, exact: _Exact, mine: str) -> tuple[str, str]:
+    """Whether the exact result lies above, and below, what was computed."""
+    same = w.value(f"fcmp oeq double {exact[0]}, {mine}")
+    found = []
+    for sign in ("ogt", "olt"):
+        far = w.value(f"fcmp {sign} double {exact[0]}, {mine}")
+        near = w.value(f"fcmp {sign} double {exact[1]}, 0.0")
+        little = w.value(f"and i1 {same}, {near}")
+        found.append(w.value(f"or i1 {far}, {little}"))
+    return found[0], found[1]
+
+
+def _of_overflow(
+    w: Writer, how: str, values: list[str], near: str, above: str, below: str
+) -> tuple[str, str]:
+    """A double that overflowed is too large: there is no wider type to see that in."""
+    finite = "true"
+    for value in values:
+        size = w.value(f"call double @llvm.fabs.f64(double {value})")
+        test = w.value(f"fcmp olt double {size}, 0x7FF0000000000000")
+        finite = w.value(f"and i1 {finite}, {test}")
+    if how == "div":  # by 0 it is infinite
+        some = w.value(f"fcmp one double {values[1]}, 0.0")
+        finite = w.value(f"and i1 {finite}, {some}")
+    up = w.value(f"fcmp oeq double {near}, 0x7FF0000000000000")
+    down = w.value(f"fcmp oeq double {near}, 0xFFF0000000000000")
+    over, under = w.value(f"and i1 {finite}, {up}"), w.value(f"and i1 {finite}, {down}")
+    return w.value(f"or i1 {above}, {under}"), w.value(f"or i1 {below}, {over}")
+
+
+def stepped(w: Writer, mode: str, type_: str, near: str, above: str, below: str) -> str:
+    """The nearest result, or its neighbour on the side of the exact one that ``mode`` asks for."""
+    t, bits = llvm(type_), f"i{8 * SIZES[type_]}"
+    word = w.value(f"bitcast {t} {near} to {bits}")
+    negative = w.value(f"icmp slt {bits} {word}, 0")
+    more, less = w.value(f"add {bits} {word}, 1"), w.value(f"sub {bits} {word}, 1")
+    if mode == "rz":
+        wrong = w.value(f"select i1 {negative}, i1 {above}, i1 {below}")
+        moved = less
+    elif mode == "rp":
+        wrong = above
+        moved = w.value(f"select i1 {negative}, {bits} {less}, {bits} {more}")
+    else:
+        wrong = below
+        moved = w.value(f"select i1 {negative}, {bits} {more}, {bits} {less}")
+    chosen = w.value(f"select i1 {wrong}, {bits} {moved}, {bits} {word}")
+    return w.value(f"bitcast {bits} {chosen} to {t}")
+
+
+def narrowed(w: Writer, mode: str, value: str) -> str:
+    """A float64 as float32."""
+    near = w.value(f"fptrunc double {value} to float")
+    back = w.value(f"fpext float {near} to double")
+    above = w.value(f"fcmp ogt double {value}, {back}")
+    below = w.value(f"fcmp olt double {value}, {back}")
+    return stepped(w, mode, "f32", near, above, below)
+
+
+def of_integer(w: Writer, mode: str, value: str, source: str, signed: bool, type_: str) -> str:
+    """An integer of LLVM's type ``source`` as a float."""
+    t, sign = llvm(type_), "s" if signed else "u"
+    near = w.value(f"{sign}itofp {source} {value} to {t}")
+    back = w.value(f"call i128 @llvm.fptosi.sat.i128.{type_}({t} {near})")
+    wide = w.value(f"{'s' if signed else 'z'}ext {source} {value} to i128")
+    above = w.value(f"icmp sgt i128 {wide}, {back}")
+    below = w.value(f"icmp slt i128 {wide}, {back}")
+    return stepped(w, mode, type_, near, above, below)

@@ -1,0 +1,1 @@
+"""Native code of PTX modules, and launches over threads."""

@@ -1,0 +1,206 @@
+"""Launches of compiled programs: launch indices over threads, whatever the programs' interface."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import threading
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.raytrace.kernels.geometry.cuda_texture import sampler
+from nau_py.raytrace.ptx.runtime.frame import (
+    FRAME_BYTES,
+    LAUNCH,
+    LAUNCH_BYTES,
+    PLACES,
+    RECORD,
+    RECORD_HEADER,
+)
+from nau_py.raytrace.ptx.runtime.native import Native
+from nau_py.raytrace.ptx.runtime.printing import CALLBACK, Printed, formatted
+
+TRACE_DEPTH = 20
+"""The most that rays may start rays, as Nau sets it."""
+TRACE_DEPTH_EXCEEDED = (1 << 32) - 2
+"""OPTIX_EXCEPTION_CODE_TRACE_DEPTH_EXCEEDED."""
+TYPES = 16
+"""Ray types that are counted by themselves."""
+_TILE = 4096
+"""Launch indices that a thread takes at a time."""
+_LINES = 1000
+"""Texts that are kept of a launch."""
+
+
+def record_table(count: int, data_bytes: int) -> NDArray[np.uint8]:
+    """Zeroed records, uint8 (count, header and data), each of a multiple of 16 bytes."""
+    width = RECORD_HEADER + -(-data_bytes // 16) * 16
+    return np.zeros((max(count, 1), width), np.uint8)
+
+
+def set_program(record: NDArray[np.uint8], kind: str, address: int) -> None:
+    """Write the address of a program into a record. ``kind``: closest, any, intersect."""
+    at = RECORD[kind][0]
+    record[at : at + 8] = np.frombuffer(np.uint64(address).tobytes(), np.uint8)
+
+
+@dataclass(slots=True)
+class Launch:
+    """What a launch needs. ``hits`` and ``misses``: records (:func:`record_table`) of one width;
+    ``context``: the record of ray generation and exception; ``indices``: int64, those that are
+    selected, None for all of ``size`` (width, height); ``flush``: denormals are zero; ``marks``:
+    takes the launch indices in work, -1 for none."""
+
+    generate: tuple[Native, int]
+    scene: int
+    hits: NDArray[np.uint8]
+    misses: NDArray[np.uint8]
+    context: NDArray[np.uint8]
+    size: tuple[int, int]
+    types: int = 1
+    exception: int = 0
+    overflow: int = TRACE_DEPTH_EXCEEDED
+    attribute_bytes: int = 32
+    callables: NDArray[np.uint64] = field(default_factory=lambda: np.zeros(0, np.uint64))
+    indices: NDArray[np.int64] | None = None
+    max_depth: int = TRACE_DEPTH
+    flush: bool = True
+    marks: NDArray[np.int64] | None = None
+
+
+@dataclass(slots=True)
+class Launched:
+    """What a launch did: rays by ray type; how many indices threw, the first of them and its
+    code; what was printed, by launch index."""
+
+    rays: NDArray[np.uint64]
+    thrown: int = 0
+    first: int = 0
+    code: int = 0
+    printed: Printed = field(default_factory=list)
+
+
+def block_of(launch: Launch, rays: NDArray[np.uint64], mark: int) -> NDArray[np.uint8]:
+    """The launch as programs and runtime see it (``frame.LAUNCH``)."""
+    width, height = launch.size
+    values = {
+        "scene": launch.scene,
+        "hit_records": launch.hits.ctypes.data,
+        "miss_records": launch.misses.ctypes.data,
+        "rays": rays.ctypes.data,
+        "raygen_record": launch.context.ctypes.data + RECORD_HEADER,
+        "mark": mark,
+        "exception": launch.exception,
+        "indices": launch.indices.ctypes.data if launch.indices is not None else 0,
+        "callables": launch.callables.ctypes.data,
+        "width": width,
+        "height": height,
+        "layers": 1,
+        "max_depth": launch.max_depth,
+        "hit_count": len(launch.hits),
+        "miss_count": len(launch.misses),
+        "record_bytes": launch.hits.shape[1],
+        "attribute_bytes": launch.attribute_bytes,
+        "types": launch.types,
+        "callable_count": len(launch.callables),
+        "flush": launch.flush,
+        "overflow": launch.overflow,
+    }
+    block = np.zeros(LAUNCH_BYTES, np.uint8)
+    for name, value in values.items():
+        put(block, name, value)
+    return block
+
+
+def put(block: NDArray[np.uint8], name: str, value: int) -> None:
+    offset, type_ = LAUNCH[name]
+    data = (np.uint64 if type_ == "u64" else np.uint32)(value).tobytes()
+    block[offset : offset + len(data)] = np.frombuffer(data, np.uint8)
+
+
+def got(block: NDArray[np.uint8], name: str) -> int:
+    offset, type_ = LAUNCH[name]
+    return int.from_bytes(block[offset : offset + (8 if type_ == "u64" else 4)].tobytes(), "little")
+
+
+def frame_of(block: NDArray[np.uint8], record: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """A frame in which a program runs outside of a launch: for a launch's block and a record."""
+    frame = np.zeros(FRAME_BYTES, np.uint8)
+    for name, value in (
+        ("launch", block.ctypes.data),
+        ("record", record.ctypes.data + RECORD_HEADER),
+    ):
+        at = PLACES[name][0]
+        frame[at : at + 8] = np.frombuffer(np.uint64(value).tobytes(), np.uint8)
+    return frame
+
+
+def bind_host(natives: list[Native], printed: Printed) -> Any:
+    """Give modules the sampler and the printer. Returns what must live as long as the launch."""
+    lock = threading.Lock()
+
+    def tell(index: int, form: int, values: int, typed: int) -> None:
+        text = formatted(form, values, bool(typed))
+        with lock:
+            printed.append((index, text))
+
+    callback = CALLBACK(tell)
+    place = ctypes.cast(callback, ctypes.c_void_p).value or 0
+    for native in natives:
+        native.set_variable("nau.sampler", int(sampler().address).to_bytes(8, "little"))
+        native.set_variable("nau.printer", place.to_bytes(8, "little"))
+    return callback
+
+
+def run_launch(
+    launch: Launch,
+    natives: list[Native],
+    threads: int = 0,
+    told: Callable[[int, int], None] = lambda done, total: None,
+) -> Launched:
+    """Run the ray generation program for every index. ``natives``: all modules that take part.
+    Results do not depend on the number of threads."""
+    width, height = launch.size
+    total = width * height if launch.indices is None else len(launch.indices)
+    marks = np.full(1, -1, np.int64) if launch.marks is None else launch.marks
+    found = Launched(np.zeros(TYPES, np.uint64))
+    kept = bind_host(natives, found.printed)
+    native, program = launch.generate
+    run = ctypes.CFUNCTYPE(
+        None, ctypes.c_uint64, ctypes.c_uint64, ctypes.c_uint64, ctypes.c_uint64
+    )(native.address("nau.launch"))
+
+    def part(begin: int) -> tuple[NDArray[np.uint64], NDArray[np.uint8]]:
+        rays = np.zeros(TYPES, np.uint64)
+        own = np.full(1, -1, np.int64)
+        slot = begin // _TILE % len(marks)
+        mark = (marks[slot:] if launch.marks is not None else own).ctypes.data
+        block = block_of(launch, rays, mark)
+        run(program, block.ctypes.data, begin, min(begin + _TILE, total))
+        marks[slot] = -1
+        return rays, block
+
+    done = 0
+    with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
+        jobs = [pool.submit(part, begin) for begin in range(0, total, _TILE)]
+        try:
+            for job in jobs:
+                rays, block = job.result()
+                found.rays += rays
+                thrown = got(block, "thrown_count")
+                if thrown and not found.thrown:
+                    found.first, found.code = got(block, "first_thrown"), got(block, "first_code")
+                found.thrown += thrown
+                done = min(done + _TILE, total)
+                told(done, total)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    del kept
+    found.printed = sorted(found.printed, key=lambda line: line[0])[:_LINES]
+    return found

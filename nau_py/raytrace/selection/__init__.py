@@ -1,0 +1,1 @@
+"""Where to trace: selectors, weights, pixels, samples a pixel."""

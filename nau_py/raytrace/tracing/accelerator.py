@@ -1,0 +1,230 @@
+"""Embree behind one class; nobody else imports embreex.
+
+The library inside embreex's wheel is called through its C interface: compiled kernels send single
+rays (``kernels/intersect/embree.py``) without a Python object in between, with their own ``tmax``.
+Scenes are always robust, an empty one answers with misses, and no ray that is not finite is ever
+sent.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import weakref
+from collections.abc import Sequence
+from ctypes import c_char_p, c_int, c_size_t, c_ssize_t, c_uint, c_void_p
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import embreex
+import llvmlite.binding
+import numpy as np
+from numpy.typing import NDArray
+
+from nau_py.raytrace.tracing.arrays import F32, Mask
+from nau_py.raytrace.tracing.geometry import RayGeometry
+
+NO_HIT = -1
+_VERSION_PROPERTY = 0  # RTC_DEVICE_PROPERTY_VERSION of rtcore_device.h
+_TRIANGLES, _USER = 0, 120  # rtcore_geometry.h
+_INDEX, _VERTEX = 0, 1  # rtcore_buffer.h
+_UINT3, _FLOAT3 = 0x5003, 0x9003  # rtcore_common.h
+_ROBUST, _FILTER = 1 << 2, 1 << 3  # RTC_SCENE_FLAG_ROBUST, …_FILTER_FUNCTION_IN_ARGUMENTS
+_FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
+    "rtcNewDevice": (c_void_p, [c_char_p]),
+    "rtcGetDeviceProperty": (c_ssize_t, [c_void_p, c_int]),
+    "rtcGetDeviceError": (c_int, [c_void_p]),
+    "rtcNewScene": (c_void_p, [c_void_p]),
+    "rtcReleaseScene": (None, [c_void_p]),
+    "rtcSetSceneFlags": (None, [c_void_p, c_int]),
+    "rtcNewGeometry": (c_void_p, [c_void_p, c_int]),
+    "rtcReleaseGeometry": (None, [c_void_p]),
+    "rtcSetSharedGeometryBuffer": (
+        None,
+        [c_void_p, c_int, c_uint, c_int, c_void_p, c_size_t, c_size_t, c_size_t],
+    ),
+    "rtcSetGeometryUserPrimitiveCount": (None, [c_void_p, c_uint]),
+    "rtcSetGeometryUserData": (None, [c_void_p, c_void_p]),
+    "rtcSetGeometryBoundsFunction": (None, [c_void_p, c_void_p, c_void_p]),
+    "rtcSetGeometryIntersectFunction": (None, [c_void_p, c_void_p]),
+    "rtcCommitGeometry": (None, [c_void_p]),
+    "rtcAttachGeometry": (c_uint, [c_void_p, c_void_p]),
+    "rtcCommitScene": (None, [c_void_p]),
+}
+
+
+@lru_cache(maxsize=1)
+def _library() -> ctypes.CDLL:
+    """Embree, with its symbols known to compiled kernels."""
+    package = Path(embreex.__file__).parent
+    found = [*sorted((package.parent / "embreex.libs").glob("libembree*"))]
+    found += [p for p in sorted(package.rglob("*embree4*")) if p.suffix in (".dll", ".dylib")]
+    if not found:
+        raise ImportError(f"the Embree library is not inside embreex at {package}")
+    llvmlite.binding.load_library_permanently(str(found[0]))
+    library = ctypes.CDLL(str(found[0]))
+    for name, (result, arguments) in _FUNCTIONS.items():
+        function = getattr(library, name)
+        function.restype, function.argtypes = result, arguments
+    return library
+
+
+def load_embree() -> None:
+    """Make Embree's symbols known to compiled code."""
+    _library()
+
+
+@lru_cache(maxsize=1)
+def _device() -> int:
+    return int(_library().rtcNewDevice(None))
+
+
+def embree_version() -> str:
+    """The version of the Embree library inside embreex's wheel."""
+    number = int(_library().rtcGetDeviceProperty(_device(), _VERSION_PROPERTY))
+    return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
+
+
+@dataclass(slots=True)
+class Triangles:
+    """Positions float32 (n, 3) or (n, 4) and triangles uint32 (m, 3), shared, not copied."""
+
+    positions: F32
+    triangles: NDArray[np.uint32]
+
+    @property
+    def count(self) -> int:
+        return len(self.triangles)
+
+    def make(self, rtc: ctypes.CDLL, device: int) -> int:
+        mesh = int(rtc.rtcNewGeometry(device, _TRIANGLES))
+        for slot, kind, data in (
+            (_VERTEX, _FLOAT3, self.positions),
+            (_INDEX, _UINT3, self.triangles),
+        ):
+            place, stride, count = data.ctypes.data, data.strides[0], len(data)
+            rtc.rtcSetSharedGeometryBuffer(mesh, slot, 0, kind, place, 0, stride, count)
+        return mesh
+
+
+@dataclass(slots=True)
+class Custom:
+    """Primitives that functions describe: addresses of ``RTCBoundsFunction`` and
+    ``RTCIntersectFunctionN``, and of what the first one is given."""
+
+    count: int
+    bounds: int
+    intersect: int
+    user: int
+
+    def make(self, rtc: ctypes.CDLL, device: int) -> int:
+        made = int(rtc.rtcNewGeometry(device, _USER))
+        rtc.rtcSetGeometryUserPrimitiveCount(made, self.count)
+        rtc.rtcSetGeometryUserData(made, self.user)  # the bounds function is given no other
+        rtc.rtcSetGeometryBoundsFunction(made, self.bounds, None)
+        rtc.rtcSetGeometryIntersectFunction(made, self.intersect)
+        return made
+
+
+Parts = Sequence[Triangles | Custom]
+
+
+@dataclass(eq=False)
+class _Shared:
+    """What an Embree scene shares: kept alive as long as the scene."""
+
+    parts: Parts
+
+
+def _build(parts: Parts, flags: int) -> tuple[int, _Shared]:
+    rtc, device = _library(), _device()
+    scene = rtc.rtcNewScene(device)
+    rtc.rtcSetSceneFlags(scene, flags)
+    for part in parts:
+        made = part.make(rtc, device)
+        rtc.rtcCommitGeometry(made)
+        rtc.rtcAttachGeometry(scene, made)
+        rtc.rtcReleaseGeometry(made)
+    rtc.rtcCommitScene(scene)
+    if problem := rtc.rtcGetDeviceError(device):
+        count = sum(part.count for part in parts)
+        raise MemoryError(f"Embree could not build {count} primitives: error {problem}")
+    kept = _Shared(parts)
+    weakref.finalize(kept, rtc.rtcReleaseScene, scene)
+    return int(scene), kept
+
+
+def build_groups(parts: Parts) -> tuple[int, object]:
+    """An Embree scene with a geometry for each part, by index. Returns its handle, and what must
+    be kept as long as it."""
+    return _build(parts, _ROBUST | _FILTER)
+
+
+@dataclass(slots=True)
+class Intersections:
+    """Nearest hits of n rays: ``triangle`` int32 (n,), -1 for a miss; barycentrics ``u`` ``v`` of
+    vertices 1 and 2; distance ``t`` in ray-direction lengths. float32 (n,)."""
+
+    triangle: NDArray[np.int32]
+    u: F32
+    v: F32
+    t: F32
+
+
+class Accelerator:
+    """Acceleration structures over the triangles of a :class:`RayGeometry`.
+
+    What stands still and what moves lie in two Embree scenes, ``scene`` and ``moving``: handles
+    for kernels, 0 where there is no triangle. Positions are world space less the centre.
+    """
+
+    def __init__(self, geometry: RayGeometry) -> None:
+        self.first_moving = geometry.first_moving
+        self._kept: dict[str, _Shared] = {}
+        self.scene = self._build("scene", geometry, slice(0, geometry.first_moving))
+        self.moving = 0
+        self.rebuild_moving(geometry)
+
+    def rebuild_moving(self, geometry: RayGeometry) -> None:
+        """Build anew what moves; ``geometry`` has the same triangles at other places."""
+        self.moving = self._build("moving", geometry, slice(geometry.first_moving, None))
+
+    def _build(self, name: str, geometry: RayGeometry, part: slice) -> int:
+        triangles = np.ascontiguousarray(geometry.triangles[part], np.uint32)
+        if not len(triangles):
+            return 0
+        vertices = np.zeros((len(geometry.vertices) + 1, 3), np.float32)  # Embree reads 16 bytes
+        vertices[:-1] = geometry.vertices
+        scene, self._kept[name] = _build([Triangles(vertices[:-1], triangles)], _ROBUST)
+        return scene
+
+    def _record(self) -> NDArray[Any]:
+        from nau_py.raytrace.kernels.core.tables import SCENE
+
+        record = np.zeros(1, SCENE)
+        record["standing"], record["moving"] = self.scene, self.moving
+        record["first_moving"] = self.first_moving
+        return record
+
+    def intersect(self, origin: F32, direction: F32, tmax: F32 | None = None) -> Intersections:
+        """Nearest hits of float32 (n, 3) rays; ``tmax`` float32 (n,). Rays that are not finite
+        hit nothing."""
+        from nau_py.raytrace.kernels.path.batch_memory import intersect
+
+        n = len(origin)
+        found = Intersections(np.empty(n, np.int32), *np.zeros((3, n), np.float32))
+        limit = np.array([np.inf] if tmax is None else tmax, np.float32)
+        o, d = np.ascontiguousarray(origin, "f4"), np.ascontiguousarray(direction, "f4")
+        intersect(self._record(), o, d, limit, found.triangle, found.u, found.v, found.t)
+        return found
+
+    def occluded(self, origin: F32, direction: F32, tmax: F32 | None = None) -> Mask:
+        """Whether anything is hit, bool (n,)."""
+        from nau_py.raytrace.kernels.path.batch_memory import occluded
+
+        limit = np.array([np.inf] if tmax is None else tmax, np.float32)
+        o, d = np.ascontiguousarray(origin, "f4"), np.ascontiguousarray(direction, "f4")
+        found = np.zeros(len(o), bool)
+        occluded(self._record(), o, d, limit, found)
+        return found

@@ -1,0 +1,189 @@
+"""Ray programs: found, loaded when a project runs, and checked at every call."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import sys
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from nau_py.diagnostics.diagnostic import error, listing, nearest
+from nau_py.diagnostics.errors import NauError, ProgramError
+from nau_py.diagnostics.location import Location
+from nau_py.model.raytrace import BUILTIN, Program
+from nau_py.raytrace.kernels.core.tables import USER
+from nau_py.raytrace.tracing.arrays import F32, Mask
+
+
+@dataclass(frozen=True, slots=True)
+class BoundProgram:
+    """A program with the words that its errors need: project, pass, material, proc."""
+
+    function: Callable[..., Any] | None
+    label: str
+    location: Location
+    file: str
+    code: int = USER
+    """What kernels call the program by; USER: it is Python. A compiled one has no function."""
+
+    def call(self, argument: object) -> Any:
+        """Run the program. Raises :class:`~nau_py.ProgramError` for what it raises."""
+        assert self.function is not None, f"{self.label} is compiled"
+        try:
+            return self.function(argument)
+        except NauError:
+            raise
+        except Exception as bug:
+            where = self._blame(bug)
+            message = f"{self.label} raised {type(bug).__name__}: {bug}"
+            raise ProgramError(error("T010", where, message)) from bug
+
+    def _blame(self, bug: Exception) -> Location:
+        """The innermost line of the program's own file, or where the project names it."""
+        frames = traceback.extract_tb(bug.__traceback__)
+        own = [f for f in frames if f.filename == self.file]
+        if not own:
+            return self.location
+        return Location(self.file, own[-1].lineno or 0, (own[-1].colno or 0) + 1)
+
+    def _wrong(self, what: str) -> ProgramError:
+        code = getattr(self.function, "__code__", None)
+        where = self.location
+        if code is not None and code.co_filename == self.file:
+            where = Location(self.file, code.co_firstlineno, 1)
+        return ProgramError(error("T011", where, f"{self.label} returned {what}"))
+
+    def radiance(self, argument: object, count: int) -> F32:
+        """What the program returns, as RGBA (count, 4): colours get alpha 1."""
+        value = self.call(argument)
+        try:
+            array = np.asarray(value)
+            numeric = array.dtype.kind in "fiub"
+        except (ValueError, TypeError):
+            array, numeric = np.zeros(0), False
+        if not numeric:
+            raise self._wrong(f"{type(value).__name__}; numbers of shape ({count}, 3) are expected")
+        if array.shape == (3,) or array.shape == (4,):
+            array = np.broadcast_to(array, (count, len(array)))
+        if array.shape not in ((count, 3), (count, 4)):
+            raise self._wrong(
+                f"an array of shape {array.shape}; ({count}, 3) or ({count}, 4) is expected"
+            )
+        result = np.ones((count, 4), np.float32)
+        with np.errstate(over="ignore", invalid="ignore"):
+            result[:, : array.shape[1]] = array
+        return result
+
+    def accepts(self, argument: object, count: int) -> Mask:
+        """What an any-hit program returns: True accepts a hit, False ignores it."""
+        value = self.call(argument)
+        array = np.asarray(value)
+        if array.shape != (count,) or array.dtype != np.bool_:
+            raise self._wrong(
+                f"an array of shape {array.shape} and type {array.dtype}; "
+                f"bool of shape ({count},) is expected (True accepts the hit)"
+            )
+        return array
+
+
+@dataclass(frozen=True, slots=True)
+class TrustRule:
+    """Which folders programs may be loaded from."""
+
+    folders: tuple[Path, ...]
+    refuse_all: bool = False
+    files: tuple[Path, ...] = ()
+    """Files that are trusted wherever they lie: those of plug-ins."""
+
+    def check(self, path: Path, where: Location, label: str) -> None:
+        """Raise :class:`~nau_py.ProgramError` for a file outside the folders."""
+        if self.refuse_all:
+            message = f"{label}: '{path}' is not loaded, because --no-programs was given"
+            raise ProgramError(error("T012", where, message))
+        real = path.resolve()
+        known = real in [file.resolve() for file in self.files]
+        if not known and not any(real.is_relative_to(f.resolve()) for f in self.folders):
+            message = (
+                f"{label}: '{path}' lies outside the project's folder; "
+                f"allow it with --allow-programs {real.parent}"
+            )
+            raise ProgramError(error("T012", where, message))
+
+
+class ProgramLoader:
+    """Loads the programs of one pass: built-ins, and Python modules by path, each once.
+
+    ``provided``: built-ins by kind and name that somebody else makes.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        trust: TrustRule,
+        provided: dict[tuple[str, str], Callable[..., Any]] | None = None,
+    ) -> None:
+        self._provided = provided or {}
+        self._folder = folder
+        self._trust = trust
+        self._modules: dict[Path, ModuleType] = {}
+
+    def load(self, program: Program, label: str, kind: str) -> BoundProgram:
+        """The program behind a ``file`` and ``proc``. Raises :class:`ProgramError`."""
+        from nau_py.raytrace.programs.batch import CODES, FUNCTIONS
+        from nau_py.raytrace.programs.source import stand_in, strip_decoration
+
+        proc = program.proc or ""
+        if program.file == BUILTIN:
+            codes, functions = CODES.get(kind, {}), FUNCTIONS.get(kind, {})
+            functions = functions | {n: f for (k, n), f in self._provided.items() if k == kind}
+            known = [*codes, *functions]
+            if proc not in known:
+                message = f"{label}: there is no built-in '{proc}'; there is {listing(known)}"
+                message += nearest(proc, known)
+                raise ProgramError(error("T006", program.where("proc"), message))
+            code = codes.get(proc, USER)
+            return BoundProgram(functions.get(proc), label, program.location, "", code)
+        path = stand_in(self._folder, program.file or "")
+        if path is None:
+            message = f"{label}: no Python file stands in for '{program.file}'"
+            raise ProgramError(error("T005", program.where("file"), message))
+        self._trust.check(path, program.where("file"), label)
+        module = self._module(path, program.where("file"), label)
+        function = getattr(module, proc, None) or getattr(module, strip_decoration(proc), None)
+        if not callable(function):
+            message = f"{label}: '{path.name}' defines no function '{proc}'"
+            raise ProgramError(error("T004", program.where("proc"), message))
+        return BoundProgram(function, label, program.location, str(path))
+
+    def _module(self, path: Path, where: Location, label: str) -> ModuleType:
+        if path in self._modules:
+            return self._modules[path]
+        digest = hashlib.sha256(str(path).encode()).hexdigest()[:12]
+        name = f"nau_py_program_{path.stem}_{digest}"
+        spec = importlib.util.spec_from_file_location(name, path)
+        if spec is None or spec.loader is None:
+            raise ProgramError(error("T005", where, f"{label}: '{path}' is no Python file"))
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[name] = module
+        try:
+            # not through the loader: its bytecode is told apart by size and whole seconds only,
+            # and would stand in the project's folder
+            code = compile(path.read_bytes(), str(path), "exec", dont_inherit=True)
+            exec(code, module.__dict__)
+        except SyntaxError as bug:
+            place = Location(str(path), bug.lineno or 1, bug.offset or 1)
+            raise ProgramError(error("T010", place, f"{label}: {bug.msg}")) from bug
+        except Exception as bug:
+            frames = [f for f in traceback.extract_tb(bug.__traceback__) if f.filename == str(path)]
+            place = Location(str(path), frames[-1].lineno or 1, 1) if frames else where
+            message = f"{label}: loading '{path.name}' raised {type(bug).__name__}: {bug}"
+            raise ProgramError(error("T010", place, message)) from bug
+        self._modules[path] = module
+        return module

@@ -1,0 +1,251 @@
+"""R: references to what is not defined."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
+from nau_py.diagnostics.location import Location
+from nau_py.model.attributes import OBJECT_TYPES
+from nau_py.model.library import DEFAULT_LIBRARY
+from nau_py.model.linked import Project
+from nau_py.model.maps import matches
+from nau_py.model.material import ValueOf
+from nau_py.model.node import Attr, Node, Settings, file_key
+from nau_py.model.passes import Pass, TargetReference
+from nau_py.model.raytrace import RayVariable
+from nau_py.model.references import (
+    CONTEXTS,
+    PLAIN_KINDS,
+    known_names,
+    owned_nodes,
+    pass_libraries,
+    qualified_reference,
+)
+from nau_py.model.walk import nodes
+from nau_py.rules.rule import ERROR, NOTE, WARNING, Facts, Rule, check, rule
+
+
+def _reference(number: int, kind: str, bad: str, good: str) -> Rule:
+    return rule(
+        f"R{number:03}",
+        ERROR,
+        f"Undefined {kind}",
+        f"The {kind} that is named is defined nowhere in the project or its libraries.",
+        bad,
+        good,
+    )
+
+
+RULES_BY_KIND: dict[str, Rule] = {
+    kind: _reference(number, kind, bad, good)
+    for number, (kind, bad, good) in enumerate(
+        [
+            ("scene", "<scene name='Plasa'/>", "<scene name='Plaza'/>"),
+            ("camera", "<camera name='Eey'/>", "<camera name='Eye'/>"),
+            ("light", "<light name='Son'/>", "<light name='Sun'/>"),
+            ("viewport", "<viewport name='Windw'/>", "<viewport name='Window'/>"),
+            ("library", "fromLibrary='Hybird'", "fromLibrary='Hybrid'"),
+            ("material", "toMaterial='flat' (not in the library)", "toMaterial='lit'"),
+            ("shader", "<shader name='phnog'>", "<shader name='phong'>"),
+            ("state", "<state name='blnd'/>", "<state name='blend'/>"),
+            ("texture", "<texture name='colour' UNIT='0'/>", "<texture name='color' UNIT='0'/>"),
+            ("render target", "<renderTarget name='rast' …/>", "<renderTarget name='raster' …/>"),
+            ("buffer", "<buffer name='ray'/>", "<buffer name='rays'/>"),
+            ("texture array", "textureArray='Lib::arr'", "textureArray='Lib::array'"),
+            ("pipeline", "<pipelines default='Rast'>", "<pipelines default='Raster'>"),
+            ("pass", "<renderTarget sameas='pas1'/>", "<renderTarget sameas='pass1'/>"),
+            ("object type", "type='CAMRA'", "type='CAMERA'"),
+        ],
+        start=1,
+    )
+}
+R016 = rule(
+    "R016",
+    ERROR,
+    "Undefined component",
+    "The object type has no such attribute, and no user attribute adds it.",
+    "type='LIGHT' component='COLOUR'",
+    "type='LIGHT' component='COLOR'",
+)
+R017 = rule(
+    "R017",
+    ERROR,
+    "Undefined context object",
+    "A named context must be an object of the type.",
+    "type='CAMERA' context='Eey'",
+    "type='CAMERA' context='Eye'",
+)
+R018 = rule(
+    "R018",
+    WARNING,
+    "Pattern matches no material",
+    "The map has no effect: no material of the default library has such a name.",
+    "<map toMaterial='Glas*'>",
+    "<map toMaterial='Glass*'>",
+)
+R019 = rule(
+    "R019",
+    NOTE,
+    "sameas of a pass that draws into the window",
+    "The pass has no render target, so this one draws into the window too, as in Nau.",
+    "<renderTarget sameas='toWindow'/>",
+    "<renderTarget sameas='toTarget'/>",
+)
+
+
+class _Names:
+    """Known names by kind, computed once a run."""
+
+    def __init__(self, project: Project) -> None:
+        self._project = project
+        self._found: dict[str, list[str]] = {}
+
+    def of(self, kind: str) -> list[str]:
+        if kind not in self._found:
+            self._found[kind] = known_names(self._project, kind)
+        return self._found[kind]
+
+
+@check
+def references(facts: Facts) -> Iterator[Diagnostic]:
+    """Every attribute that names something."""
+    names = _Names(facts.project)
+    for node, library in owned_nodes(facts.project):
+        for name, marker in node.markers().items():
+            if isinstance(marker, Attr) and marker.ref:
+                value = getattr(node, name)
+                if value is not None:
+                    yield from _attribute(facts, names, node, library, name, marker, value)
+            elif isinstance(marker, Settings):
+                for tag, setting in getattr(node, name).items():
+                    attribute = facts.project.registry[marker.type].get(tag)
+                    if attribute is not None and attribute.reference:
+                        yield from _name(
+                            names,
+                            attribute.reference,
+                            str(setting.parts[0]),
+                            setting.location,
+                            f"<{tag}> of <{node.tag}>",
+                        )
+
+
+def _name(names: _Names, kind: str, value: str, where: Location, what: str) -> Iterator[Diagnostic]:
+    known = names.of(kind)
+    if value not in known:
+        yield RULES_BY_KIND[kind].at(
+            where,
+            f"{what} names the {kind} '{value}', which is undefined; there is "
+            f"{listing(known)}{nearest(value, known)}",
+            fixes=guess(where, value, known),
+        )
+
+
+def _attribute(
+    facts: Facts, names: _Names, node: Node, library: str, name: str, marker: Attr, value: str
+) -> Iterator[Diagnostic]:
+    key = file_key(name, marker)
+    where, what = node.where(key), f"attribute '{key}' of <{node.tag}>"
+    kind = marker.ref
+    if kind in PLAIN_KINDS:
+        yield from _name(names, kind, value, where, what)
+        return
+    given = getattr(node, marker.library) if marker.library else None
+    if "::" not in value and given is not None and given not in names.of("library"):
+        return  # the library is what is undefined
+    buffers = names.of("buffer") if kind == "buffer" else ()
+    wanted = qualified_reference(node, marker, library, value, buffers)
+    if kind == "material" and wanted.split("::")[0] in pass_libraries(facts.project):
+        return
+    known = names.of(kind)
+    if wanted in known:
+        return
+    if (
+        kind == "material"
+        and wanted.startswith(f"{DEFAULT_LIBRARY}::")
+        and (facts.materials is None or value in facts.materials)
+    ):
+        return
+    home = wanted.split("::")[0]
+    local = [k.split("::", 1)[1] for k in known if k.startswith(f"{home}::")]
+    short = wanted.split("::", 1)[1]
+    yield RULES_BY_KIND[kind].at(
+        where,
+        f"{what} names the {kind} '{short}' of library '{home}', which is undefined; "
+        f"it has {listing(local)}{nearest(short, local)}",
+        fixes=guess(where, short, local),
+    )
+
+
+@check
+def components(facts: Facts) -> Iterator[Diagnostic]:
+    """Types, components and named contexts of uniform and program values."""
+    project = facts.project
+    names = _Names(project)
+    for node in nodes(project):
+        if not isinstance(node, ValueOf | RayVariable) or node.type is None:
+            continue
+        set_ = project.registry.get(node.type)
+        if set_ is None or node.type not in OBJECT_TYPES:
+            continue
+        if node.component is not None and node.component not in set_:
+            known = [a.name for a in set_]
+            yield R016.at(
+                node.where("component"),
+                f"{node.type} has no component '{node.component}'; it has "
+                f"{listing(known, 40)}{nearest(node.component, known)}",
+                fixes=guess(node.where("component"), node.component, known),
+            )
+        kind = CONTEXTS.get(node.type)
+        context = node.context
+        if not project.file.tag:
+            continue  # a library alone: the project that loads it defines cameras and lights
+        if kind and context not in (None, "CURRENT") and context not in names.of(kind):
+            known = names.of(kind)
+            yield R017.at(
+                node.where("context"),
+                f"context '{context}' is no {kind} of the project; there is "
+                f"{listing(known)}{nearest(str(context), known)}",
+                fixes=guess(node.where("context"), str(context), known),
+            )
+
+
+@check
+def patterns(facts: Facts) -> Iterator[Diagnostic]:
+    """Maps whose pattern matches nothing, where the names of models are known."""
+    if facts.materials is None:
+        return
+    known = sorted(facts.materials)
+    for pipeline in facts.project.pipelines:
+        for pass_ in pipeline.passes:
+            listed = [(m, "toMaterial", m.toMaterial) for m in pass_.injectionMaps]
+            wanted: list[tuple[Node, str, str | None]] = [
+                *listed,
+                *((m, "fromMaterial", m.fromMaterial) for m in pass_.materialMaps),
+            ]
+            for node, key, pattern in wanted:
+                if pattern and not any(matches(pattern, name) for name in known):
+                    own = [k for k in known if not k.startswith("__")]
+                    yield R018.at(
+                        node.where(key),
+                        f"'{pattern}' of pass '{pass_.name}' matches no material; there is "
+                        f"{listing(own, 30)}{nearest(pattern.rstrip('*'), own)}",
+                        fixes=guess(node.where(key), pattern.rstrip("*"), own),
+                    )
+
+
+@check
+def same_targets(facts: Facts) -> Iterator[Diagnostic]:
+    """``sameas`` of a pass that has no render target."""
+    by_name: dict[str | None, Pass] = {}
+    for pipeline in facts.project.pipelines:
+        for pass_ in pipeline.passes:
+            target: TargetReference | None = pass_.renderTarget
+            if target is not None and target.sameas in by_name:
+                other = by_name[target.sameas]
+                if other.renderTarget is None:
+                    yield R019.at(
+                        target.where("sameas"),
+                        f"pass '{other.name}', named by pass '{pass_.name}', has no render target",
+                    )
+            by_name[pass_.name] = pass_

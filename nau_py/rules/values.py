@@ -1,0 +1,328 @@
+"""V and S: values, enums, ranges, required attributes, unknown elements and attributes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from nau_py.diagnostics.diagnostic import (
+    Change,
+    Diagnostic,
+    Fix,
+    Part,
+    guess,
+    listing,
+    near,
+    nearest,
+)
+from nau_py.diagnostics.location import Location
+from nau_py.model.attribute import Attribute
+from nau_py.model.linked import Project
+from nau_py.model.node import (
+    Attr,
+    Child,
+    Inline,
+    Items,
+    Node,
+    Setting,
+    Settings,
+    Variants,
+    file_key,
+)
+from nau_py.model.physics import PhysicsMaterial
+from nau_py.model.raytrace import VERTEX_ATTRIBUTES
+from nau_py.model.scene import BufferGeometry
+from nau_py.model.texture import Texture
+from nau_py.model.walk import nodes
+from nau_py.rules.rule import ERROR, WARNING, Facts, check, rule
+from nau_py.syntax.element import Element
+
+V005 = rule(
+    "V005",
+    ERROR,
+    "Unknown enum value",
+    "The text is not one of the values that the attribute takes; letter case counts.",
+    "<DEPTH_FUNC value='LESSEQUAL'/>",
+    "<DEPTH_FUNC value='LEQUAL'/>",
+)
+V006 = rule(
+    "V006",
+    ERROR,
+    "Out of range",
+    "The number lies outside what the attribute allows.",
+    "<COLOR r='2' g='1' b='1'/>",
+    "<COLOR r='1' g='1' b='1'/>",
+)
+V007 = rule(
+    "V007",
+    ERROR,
+    "Undefined constant",
+    "The text is no number, and no constant or alias of the project has that name.",
+    "<SIZE width='shadow' height='512'/>",
+    "<constant name='shadow' value='512'/> … <SIZE width='shadow' height='512'/>",
+)
+S001 = rule(
+    "S001",
+    ERROR,
+    "Unknown element",
+    "Nothing reads an element of that name here.",
+    "<DEPTH_TESTS value='true'/>",
+    "<DEPTH_TEST value='true'/>",
+)
+S002 = rule(
+    "S002",
+    ERROR,
+    "Unknown attribute",
+    "Nothing reads an attribute of that name here, and Nau rejects it.",
+    "<project name='P' widht='512'>",
+    "<project name='P' width='512'>",
+)
+S003 = rule(
+    "S003",
+    WARNING,
+    "Ignored",
+    "Nau reads the file but never uses this; it has no effect.",
+    "<pipeline name='P' default='true'>",
+    "<pipelines default='P'>",
+)
+S004 = rule(
+    "S004",
+    ERROR,
+    "Missing attribute",
+    "The element needs the attribute.",
+    "<light/>",
+    "<light name='Sun'/>",
+)
+S005 = rule(
+    "S005",
+    ERROR,
+    "No pipeline",
+    "A project without <pipelines> has nothing to run.",
+    "<project name='P'></project>",
+    "<project name='P'><pipelines><pipeline name='A'/></pipelines></project>",
+)
+
+_STRICT = {"project", "scenes", "preProcess", "postProcess"}
+"""Elements whose unknown attributes Nau rejects; elsewhere it ignores them."""
+_IGNORED_CHILDREN = {
+    "assets": {"stringAliases", "events"},
+}
+_LENIENT = {"material", "materialLib", "materiallib", "sensor", "interface", "window", "pipeline"}
+"""Elements whose unknown children Nau ignores."""
+_STRUCTURAL = {
+    "testScript",
+    "preProcess",
+    "postProcess",
+    "mode",
+    "scene",
+    "scenes",
+    "lights",
+    "viewport",
+    "viewports",
+    "renderTarget",
+    "materialMaps",
+    "injectionMaps",
+    "texture",
+    "material",
+    "materials",
+    "rays",
+    "hits",
+    "rayCount",
+    "rtRayTypes",
+    "rtVertexAttributes",
+    "rtEntryPoint",
+    "rtDefaultMaterial",
+    "preScript",
+    "postScript",
+    "rtGlobalParams",
+    "rtMaterialMap",
+}
+
+
+def known_children(node: Node, project: Project) -> list[str]:
+    """Tags that ``node`` takes."""
+    tags: list[str] = []
+    for name, marker in node.markers().items():
+        if isinstance(marker, Child):
+            tags.append(marker.tag or name)
+        elif isinstance(marker, Items):
+            tags.append(marker.wrapper or marker.tag)
+        elif isinstance(marker, Variants):
+            tags += [marker.wrapper] if marker.wrapper else list(marker.classes)
+        elif isinstance(marker, Settings):
+            tags += project.registry[marker.type].writable
+    return tags
+
+
+def known_attributes(node: Node, project: Project) -> list[str]:
+    """Attributes that ``node`` takes."""
+    found: list[str] = []
+    for name, marker in node.markers().items():
+        if isinstance(marker, Attr):
+            found.append(file_key(name, marker))
+        elif isinstance(marker, Inline):
+            found += project.registry[marker.type].writable
+    return found
+
+
+@check
+def unknown_things(facts: Facts) -> Iterator[Diagnostic]:
+    """Attributes and elements that the models have no place for."""
+    for node in nodes(facts.project):
+        attributes = known_attributes(node, facts.project)
+        for key, value in node.unknown_attributes.items():
+            if key in attributes:
+                continue  # its value did not convert: V001 says so
+            strict = node.tag in _STRICT
+            known = f"; <{node.tag}> takes {listing(attributes)}{nearest(key, attributes)}"
+            message = f"attribute '{key}' (='{value}') of <{node.tag}> is unknown"
+            where = node.where(key)
+            fixes = guess(where, key, attributes, Part.ATTRIBUTE)
+            if strict:
+                yield S002.at(where, message + known, fixes=fixes)
+            else:
+                fixes += _remove(where, key, safe=near(key, attributes) is None)
+                yield S003.at(where, message + " and ignored" + known, fixes=fixes)
+        for tag, listed in node.unknown_children.items():
+            for child in listed:
+                yield from _unknown_child(facts.project, node, tag, child)
+        for wrapper, element in node.partial.items():
+            yield from _left_over(facts.project, node, wrapper, element)
+
+
+def _remove(where: Location, key: str, safe: bool) -> tuple[Fix, ...]:
+    """The fix that takes an ignored attribute away: safe where it cannot be a slip of the pen."""
+    return (Fix(f"Remove '{key}'", (Change(where, Part.ATTRIBUTE, key, ""),), safe),)
+
+
+def _unknown_child(project: Project, node: Node, tag: str, child: Element) -> Iterator[Diagnostic]:
+    tags = known_children(node, project)
+    if tag in tags or _has_setting(node, tag, project):
+        return  # repeated or unreadable: X004, V001, V003 or V004 say so
+    written = child.source_tag
+    ignored = _IGNORED_CHILDREN.get(node.tag, set())
+    from_file = isinstance(node, Texture) and node.filename is not None
+    if (
+        from_file
+        or tag in ignored
+        or (node.tag in _LENIENT and not isinstance(node, PhysicsMaterial))
+        or (node.tag == "pass" and tag in _STRUCTURAL)
+    ):
+        yield S003.at(child.location, f"element <{written}> of <{node.tag}> is ignored")
+        return
+    if isinstance(node, BufferGeometry) and tag in (*VERTEX_ATTRIBUTES, "index"):
+        return
+    known = f"<{node.tag}> takes {listing(tags, 40)}{nearest(written, tags)}"
+    message = f"element <{written}> of <{node.tag}> is unknown; {known}"
+    fixes = guess(child.location, written, tags, Part.ELEMENT)
+    yield S001.at(child.location, message, fixes=fixes)
+
+
+def _has_setting(node: Node, tag: str, project: Project) -> bool:
+    return any(
+        isinstance(marker, Settings) and tag in project.registry[marker.type]
+        for marker in node.markers().values()
+    )
+
+
+def _left_over(
+    project: Project, node: Node, wrapper: str, element: Element
+) -> Iterator[Diagnostic]:
+    inside = [
+        tag
+        for marker in node.markers().values()
+        if isinstance(marker, Items | Variants) and marker.wrapper == wrapper
+        for tag in ([marker.tag] if isinstance(marker, Items) else marker.classes)
+    ]
+    name = element.source_tag
+    for key, value in element.attributes.items():
+        message = f"attribute '{key}' (='{value}') of <{name}> is unknown and ignored"
+        where = element.where(key)
+        yield S003.at(where, message, fixes=_remove(where, key, safe=True))
+    for child in element.children:
+        known = f"<{name}> takes {listing(inside)}{nearest(child.source_tag, inside)}"
+        message = f"element <{child.source_tag}> of <{name}> is unknown; {known}"
+        fixes = guess(child.location, child.source_tag, inside, Part.ELEMENT)
+        yield S001.at(child.location, message, fixes=fixes)
+
+
+@check
+def attribute_values(facts: Facts) -> Iterator[Diagnostic]:
+    """Required attributes, and values of enumerated ones."""
+    for node in nodes(facts.project):
+        for name, marker in node.markers().items():
+            if not isinstance(marker, Attr):
+                continue
+            key, value = file_key(name, marker), getattr(node, name)
+            if value is None:
+                if marker.required and key not in node.unknown_attributes:
+                    yield S004.at(node.location, f"<{node.tag}> needs the attribute '{key}'")
+            elif marker.values and value not in marker.values:
+                known = list(marker.values)
+                yield V005.at(
+                    node.where(key),
+                    f"attribute '{key}' of <{node.tag}> is '{value}'; it takes "
+                    f"{listing(known, 20)}{nearest(str(value), known)}",
+                    fixes=guess(node.where(key), str(value), known),
+                )
+            elif isinstance(value, str) and marker.constant:
+                yield from _constant(
+                    facts.project, value, f"'{key}' of <{node.tag}>", node.where(key)
+                )
+
+
+def _constant(project: Project, name: str, what: str, where: Location) -> Iterator[Diagnostic]:
+    known = list(project.constants)
+    if name not in known:
+        yield V007.at(
+            where,
+            f"{what} is '{name}': no number, and no constant of that name; the project defines "
+            f"{listing(known)}{nearest(name, known)}",
+            fixes=guess(where, name, known),
+        )
+
+
+@check
+def settings(facts: Facts) -> Iterator[Diagnostic]:
+    """Enums, ranges and constants of child tags and inline attributes."""
+    for node in nodes(facts.project):
+        for name, marker in node.markers().items():
+            if isinstance(marker, Settings | Inline):
+                for tag, setting in getattr(node, name).items():
+                    attribute = facts.project.registry[marker.type].get(tag)
+                    if attribute is not None:
+                        yield from _setting(facts.project, node, tag, setting, attribute)
+
+
+def _setting(
+    project: Project, node: Node, tag: str, setting: Setting, attribute: Attribute
+) -> Iterator[Diagnostic]:
+    what = f"<{tag}> of <{node.tag}>"
+    where = setting.location
+    for key, value in setting.extra.items():
+        yield S003.at(where, f"attribute '{key}' (='{value}') of {what} is unknown and ignored")
+    if attribute.values and setting.parts[0] not in attribute.values:
+        known = list(attribute.values)
+        yield V005.at(
+            where,
+            f"{what} is '{setting.parts[0]}'; it takes {listing(known, 40)}"
+            f"{nearest(str(setting.parts[0]), known)}",
+            fixes=guess(where, str(setting.parts[0]), known),
+        )
+    if not attribute.type.is_number:
+        return
+    low, high = attribute.minimum, attribute.maximum
+    for part in setting.parts:
+        if isinstance(part, str):
+            yield from _constant(project, part, what, where)
+            continue
+        if (low is not None and part < low) or (high is not None and part > high):
+            limits = f"at least {low:g}" if high is None else f"from {low:g} to {high:g}"
+            yield V006.at(where, f"{what} is {part:g}; it must be {limits}")
+
+
+@check
+def has_pipelines(facts: Facts) -> Iterator[Diagnostic]:
+    """A project needs something to run."""
+    project = facts.project
+    if project.file.name is not None and not project.pipelines:
+        yield S005.at(project.file.location, f"project '{project.name}' has no pipeline to run")

@@ -1,0 +1,111 @@
+"""Hot reload: follows the files of a project and renders again what has changed.
+
+What is loaded stays as long as it can: a shader is compiled, a ray program bound anew; anything
+else loads the project again. Where the new state is wrong the last good one stays, and the error
+says why.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from pathlib import Path
+
+from nau_py.diagnostics.errors import NauError
+from nau_py.model.linked import Project
+from nau_py.run.renderer import Frame, Renderer
+from nau_py.run.used_files import PROGRAM, SHADER, used_files
+
+Stamp = tuple[int, int, int] | None
+
+
+def stamp(path: Path) -> Stamp:
+    """What tells a file from a later one of its name: time, size, inode; None for none."""
+    try:
+        found = os.stat(path)
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
+class Watch:
+    """A project that is rendered again when its files change.
+
+    ``load`` reads the project; ``make`` makes a renderer for it, and raises
+    :class:`~nau_py.NauError` for a wrong one. ``frame``: the frame to render. ``own``: a
+    file that is written from the pictures, which is not followed.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        load: Callable[[Path], Project],
+        make: Callable[[Project], Renderer],
+        frame: int = 0,
+        own: Path | None = None,
+    ) -> None:
+        self._own = own.resolve() if own is not None else None
+        self.path, self._load, self._make, self._frame = path, load, make, frame
+        self.project = load(path)
+        self.renderer: Renderer | None = None
+        self._sound = False
+        """Whether the last rendering succeeded: only then a part of it may be exchanged."""
+        self._kinds: dict[Path, str] = {}
+        self._stamps: dict[Path, Stamp] = {}
+        self._follow(self.project)
+
+    def _follow(self, project: Project) -> None:
+        """Follow the files of ``project``, and those of the one that is shown."""
+        kinds = used_files(self.project) | used_files(project)
+        if self._own is not None:
+            kinds.pop(self._own, None)
+        self._stamps = {p: self._stamps.get(p, stamp(p)) for p in kinds}
+        self._kinds = kinds
+
+    def changed(self) -> dict[Path, str]:
+        """The files that have changed since they were last asked about, and their kinds."""
+        found = {p: k for p, k in self._kinds.items() if stamp(p) != self._stamps[p]}
+        for path in found:
+            self._stamps[path] = stamp(path)
+        return found
+
+    def start(self) -> Frame:
+        """Render for the first time. Raises :class:`~nau_py.NauError`."""
+        return self._whole(self.project)
+
+    def render(self, changed: dict[Path, str]) -> Frame:
+        """Take in what has changed, and render. Raises :class:`~nau_py.NauError`."""
+        kinds = set(changed.values())
+        if self.renderer is None or not self._sound or not kinds <= {SHADER, PROGRAM}:
+            return self._reload()
+        self._sound = False
+        if SHADER in kinds:
+            self.renderer.reload_shaders({p for p, kind in changed.items() if kind == SHADER})
+        if PROGRAM in kinds:
+            self.renderer.reload_ray_programs()
+        frame = self.renderer.again()
+        self._sound = True
+        return frame
+
+    def _reload(self) -> Frame:
+        project = self._load(self.path)
+        self._follow(project)
+        return self._whole(project)
+
+    def _whole(self, project: Project) -> Frame:
+        self._sound = False
+        renderer = self._make(project)
+        try:
+            frame = renderer.render(self._frame)
+        except NauError:
+            renderer.close()
+            raise
+        if self.renderer is not None:
+            self.renderer.close()
+        self.project, self.renderer, self._sound = project, renderer, True
+        self._follow(project)
+        return frame
+
+    def close(self) -> None:
+        if self.renderer is not None:
+            self.renderer.close()

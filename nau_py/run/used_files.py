@@ -1,0 +1,81 @@
+"""The files that a project uses."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from nau_py.model.linked import Project
+from nau_py.model.node import Attr, Node, file_key
+from nau_py.model.walk import nodes
+from nau_py.process.paths import resolve
+from nau_py.raytrace.programs.source import stand_in
+
+SHADER, PROGRAM, PROJECT, MODEL = "shader", "program", "project", "model"
+_SIBLINGS = {"script": (".lua",), PROGRAM: (".py",)}
+"""Kinds of files that can bring others of their folder, of these endings."""
+_BESIDE_MODELS = (
+    ".mtl", ".material", ".bin", ".skeleton", ".png", ".jpg", ".jpeg", ".tga", ".tif", ".tiff",
+    ".bmp", ".gif", ".webp",
+)  # fmt: skip
+"""Endings of what models refer to, where it is not known which files those are."""
+_WORD = re.compile(r"^\s*(?:mtllib|map_\w+|bump|disp|decal|refl|norm)\s+(.+?)\s*$", re.MULTILINE)
+
+
+def used_files(project: Project) -> dict[Path, str]:
+    """Path to kind (``project``: it and its libraries; else the kind of the attribute that names
+    it) of every file that a picture depends on, those that do not exist included: also the material
+    files and textures of models."""
+    found = {Path(p).resolve(): PROJECT for p in project.sources}
+    found[project.path.resolve()] = PROJECT
+    for node in nodes(project):
+        for kind, path in _named(project, node):
+            found.setdefault(path.resolve(), kind)
+            for other in _brought(path.resolve(), kind):
+                found.setdefault(other, kind)
+    return found
+
+
+def _named(project: Project, node: Node) -> Iterator[tuple[str, Path]]:
+    """(kind, path) of the files that a node names."""
+    for name, marker in node.markers().items():
+        value = getattr(node, name)
+        if not isinstance(marker, Attr) or not marker.file or not isinstance(value, str):
+            continue
+        if marker.file == PROGRAM:
+            path = stand_in(project.folder, value)
+            if path is not None:
+                yield PROGRAM, path
+            continue
+        folder = Path(node.where(file_key(name, marker)).file or ".").parent
+        yield marker.file, resolve(folder, value).best
+
+
+def _brought(path: Path, kind: str) -> Iterator[Path]:
+    """The files that a file brings with it."""
+    if kind == "folder":
+        yield from (p for p in path.rglob("*") if p.is_file())
+    elif kind == MODEL and path.suffix.lower() == ".obj":
+        for material in _referred(path):
+            yield material
+            yield from _referred(material)
+    elif kind == MODEL:
+        yield from _of_endings(path.parent, _BESIDE_MODELS)
+    elif kind in _SIBLINGS:
+        yield from _of_endings(path.parent, _SIBLINGS[kind])
+
+
+def _referred(path: Path) -> Iterator[Path]:
+    """The material files of an OBJ file, the images of an MTL file."""
+    try:
+        text = path.read_text("utf-8", "replace")
+    except OSError:
+        return
+    for words in _WORD.findall(text):
+        for name in (words, words.split()[-1]):  # options may stand before it
+            yield resolve(path.parent, name).best.resolve()
+
+
+def _of_endings(folder: Path, endings: tuple[str, ...]) -> Iterator[Path]:
+    yield from (p for p in folder.rglob("*") if p.suffix.lower() in endings and p.is_file())

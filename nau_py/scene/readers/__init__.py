@@ -1,0 +1,1 @@
+"""Readers of mesh formats, one file a format."""

@@ -1,0 +1,1 @@
+"""XML and YAML as they are written: elements with positions, edits by the character, cursors."""

@@ -1,0 +1,104 @@
+"""Writing what was changed into the files of the project: only the values that differ."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from nau_py.formats.settings import keys_of, spellings_of
+from nau_py.model.camera import Camera, Projection
+from nau_py.model.linked import Project
+from nau_py.model.node import Configured, Node, Setting
+from nau_py.model.project import UserAttribute
+from nau_py.model.values import Scalar, format_scalar
+from nau_py.syntax.edit import (
+    Document,
+    Edit,
+    attribute_edits,
+    insert_edits,
+    setting_edits,
+    value_edits,
+)
+from nau_py.viewer.controls import Values, home, parts_of
+
+Files = dict[Path, tuple[Document, list[Edit]]]
+
+
+def save_edits(project: Project, values: Values) -> tuple[Files, list[str]]:
+    """The edits that give the project's files ``values``, by file, and the keys that no file can
+    hold. Raises :class:`OSError` for a file that cannot be read."""
+    files: Files = {}
+    left: list[str] = []
+    for key, value in values.items():
+        node = home(project, key)
+        path = Path(node.location.file) if node is not None else None
+        if node is None or path is None or not node.location.line:
+            left.append(key)
+            continue
+        document, edits = files.setdefault(path, (Document.read(path), []))
+        found = _edits(project, document, node, key, value)
+        if found is None:
+            left.append(key)
+        else:
+            edits += found
+    return {path: (doc, edits) for path, (doc, edits) in files.items() if edits}, left
+
+
+def write_text(value: Scalar) -> str:
+    """A number as short as single precision allows."""
+    if isinstance(value, float):
+        return f"{value:.7g}"
+    return format_scalar(value)
+
+
+def _edits(
+    project: Project, document: Document, node: Node, key: str, value: tuple[Scalar, ...]
+) -> list[Edit] | None:
+    """None where the file's form has no place for the value."""
+    type_, _, component = parts_of(key)
+    if isinstance(node, UserAttribute):
+        return _default_edits(document, node, value)
+    if not isinstance(node, Configured):
+        begin = document.offset(node.where(component))
+        return value_edits(document, begin, write_text(value[0]))
+    attribute = project.registry[type_].attributes[component]
+    written: Setting | None = node.settings.get(component)
+    if isinstance(node, Projection):
+        assert written is not None  # home() has found it here
+        begin = document.offset(written.location)
+        return value_edits(document, begin, _texts(project, written, value)[0])
+    if written is not None:
+        begin = document.offset(written.location)
+        texts = _texts(project, written, value)
+        return setting_edits(document, begin, spellings_of(attribute), texts)
+    texts = [write_text(v) for v in value]
+    begin = document.offset(node.location)
+    if isinstance(node, Camera) and node.projection and len(value) == 1:
+        place = document.offset(node.projection.location)  # it is applied last, so it wins
+        return attribute_edits(document, place, component, texts[0]) or None
+    return insert_edits(document, begin, component, keys_of(attribute), texts) or None
+
+
+def _default_edits(
+    document: Document, node: UserAttribute, value: tuple[Scalar, ...]
+) -> list[Edit]:
+    """The default of a user attribute."""
+    given = {**node.attribute_locations}
+    vector = "rgba" if "r" in given else "xyzw"
+    edits: list[Edit] = []
+    for key, part in zip(["value"] if len(value) == 1 else vector, value):
+        if key in given:
+            edits += value_edits(document, document.offset(given[key]), write_text(part))
+        else:
+            begin = document.offset(node.location)
+            edits += attribute_edits(document, begin, key, write_text(part))
+    return edits
+
+
+def _texts(project: Project, written: Setting, value: tuple[Scalar, ...]) -> list[str]:
+    """The components as text; constants stay where they have the value."""
+    texts = [write_text(v) for v in value[: max(len(written.parts), 1)]]
+    for index, part in enumerate(written.parts[: len(texts)]):
+        if isinstance(part, str) and project.constants.get(part) == value[index]:
+            texts[index] = part
+    last = value[len(written.parts) :]
+    return texts + [write_text(v) for v in last if v not in (0, 0.0)]

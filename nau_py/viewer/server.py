@@ -1,0 +1,288 @@
+"""The viewer's server: a page, pictures and a web socket, on the loopback interface only.
+
+Everything lies below a random token, so that only who was given the address sees it. Requests must
+name the server as their host (against DNS rebinding), and web sockets come from its own page.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import hmac
+import json
+import tempfile
+from collections.abc import AsyncIterator, Awaitable, Callable
+from concurrent.futures import Future
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+from starlette.applications import Starlette
+from starlette.requests import HTTPConnection, Request
+from starlette.responses import JSONResponse, PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from nau_py.diagnostics.errors import NauError
+from nau_py.process.renderer_child import Lost, Refused
+from nau_py.reporting.target_picture import CHANNELS
+from nau_py.viewer.cost_run import CostRun
+from nau_py.viewer.desk import Desk
+from nau_py.viewer.director import Director
+from nau_py.viewer.export import camera_element
+from nau_py.viewer.studio import Wanted
+
+PAGE = files("nau_py.viewer") / "page"
+TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css"}
+STATIC = sorted(p.name for p in PAGE.iterdir() if Path(p.name).suffix in TYPES)
+LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
+_HEADERS = {
+    "Cache-Control": "no-store",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Content-Security-Policy": "default-src 'self'; img-src 'self' data: blob:; "
+    "style-src 'self' 'unsafe-inline'; connect-src 'self' "
+    "ws: wss:; frame-ancestors 'self'",
+}
+MOST_SEQUENCE = 1000
+"""Frames of one sequence, at most."""
+_OTHER_STEPS = 4
+"""Pictures that are averaged for the other side of a comparison."""
+
+
+class Gate:
+    """Lets through what knows the token and names this server; all else is refused, alike."""
+
+    def __init__(self, app: Any, token: str) -> None:
+        self.app, self.token = app, token
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        if scope["type"] not in ("http", "websocket"):
+            await self.app(scope, receive, send)
+            return
+        if self._allowed(HTTPConnection(scope)):
+            await self.app(scope, receive, send)
+        elif scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008})
+        else:
+            answer = PlainTextResponse("not found\n", status_code=404, headers=_HEADERS)
+            await answer(scope, receive, send)
+
+    def _allowed(self, connection: HTTPConnection) -> bool:
+        first = connection.url.path.lstrip("/").split("/", 1)[0]
+        if not hmac.compare_digest(first.encode(), self.token.encode()):
+            return False
+        host = connection.headers.get("host", "")
+        if host.rsplit(":", 1)[0] not in LOOPBACK:
+            return False
+        origin = connection.headers.get("origin")
+        return origin is None or urlsplit(origin).netloc == host
+
+
+class Windows:
+    """The browsers that look: each is told the newest state when it is ready for it."""
+
+    def __init__(self, desk: Desk) -> None:
+        self.desk = desk
+        self.events: set[asyncio.Event] = set()
+        self._loop: asyncio.AbstractEventLoop | None = None
+
+    def begin(self) -> None:
+        self._loop = asyncio.get_running_loop()
+        self.desk.changed = self.news
+
+    def news(self) -> None:
+        """Called by any thread."""
+        loop = self._loop
+        if loop is not None:
+            with contextlib.suppress(RuntimeError):  # the loop has ended
+                loop.call_soon_threadsafe(self._wake)
+
+    def _wake(self) -> None:
+        for event in self.events:
+            event.set()
+
+
+class Site:
+    """The routes, over one desk."""
+
+    def __init__(self, desk: Desk, director: Director, folder: Path) -> None:
+        self.desk, self.director = desk, director
+        self.windows = Windows(desk)
+        self.cost = CostRun(desk.path, folder)
+
+    async def static(self, request: Request) -> Response:
+        name = request.path_params.get("name") or "index.html"
+        if name not in STATIC:
+            return self._missing(f"there is no file '{name}'")
+        text = (PAGE / name).read_text("utf-8")
+        return Response(text, media_type=TYPES[Path(name).suffix], headers=_HEADERS)
+
+    def _missing(self, why: str) -> Response:
+        return PlainTextResponse(why + "\n", status_code=404, headers=_HEADERS)
+
+    async def live(self, socket: WebSocket) -> None:
+        """Commands come, states go. A window that is slow or gone holds up nobody."""
+        await socket.accept()
+        event = asyncio.Event()
+        event.set()
+        self.windows.events.add(event)
+        talk = asyncio.create_task(self._tell(socket, event))
+        try:
+            while True:
+                await self._command(socket, await socket.receive_text())
+        except WebSocketDisconnect:
+            return
+        finally:
+            self.windows.events.discard(event)
+            talk.cancel()
+
+    async def _tell(self, socket: WebSocket, event: asyncio.Event) -> None:
+        known = -1
+        with contextlib.suppress(WebSocketDisconnect, RuntimeError):
+            while True:
+                await event.wait()
+                event.clear()
+                said: dict[str, Any] = {"glance": self.desk.glance()}
+                if self.desk.version != known:
+                    content = self.desk.content()
+                    said["content"], known = content, content["version"]
+                await socket.send_text(json.dumps(said))
+
+    async def _command(self, socket: WebSocket, text: str) -> None:
+        try:
+            command = json.loads(text)
+            if not isinstance(command, dict):
+                raise ValueError("a command is an object")
+            await asyncio.to_thread(self.director.do, command)
+        except ValueError as problem:
+            await socket.send_text(json.dumps({"refused": str(problem)}))
+
+    async def picture(self, request: Request) -> Response:
+        shown = self.desk.picture
+        if shown is None:
+            return self._missing("there is no picture yet")
+        return Response(shown.png, media_type="image/png", headers=_HEADERS)
+
+    async def _asked(self, name: str, *arguments: Any) -> Any:
+        future: Future[Any] = self.director.ask(name, *arguments)
+        return await asyncio.wrap_future(future)
+
+    async def thumbnails(self, request: Request) -> Response:
+        found = await self._asked("thumbnails")
+        return JSONResponse({name: data.hex() for name, data in found}, headers=_HEADERS)
+
+    async def target(self, request: Request) -> Response:
+        query = request.query_params
+        channel = query.get("channel", "rgb")
+        if channel not in CHANNELS:
+            return self._missing(f"there is no channel '{channel}'")
+        exposure = min(max(float(query.get("exposure", 0)), -30.0), 30.0)
+        mask = query.get("mask") == "1"
+        data = await self._asked("target", query.get("name", ""), channel, exposure, mask)
+        return Response(data, media_type="image/png", headers=_HEADERS)
+
+    async def pixel(self, request: Request) -> Response:
+        query = request.query_params
+        x, y = int(query.get("x", -1)), int(query.get("y", -1))
+        values = await self._asked("pixel", query.get("name", ""), x, y)
+        said = [v if abs(v) < float("inf") else str(v) for v in values]  # JSON knows no others
+        return JSONResponse({"values": said}, headers=_HEADERS)
+
+    async def keep(self, request: Request) -> Response:
+        """Keep the picture, or render another pipeline or other effects, as the other side."""
+        query = request.query_params
+        wanted = self.desk.wanted()
+        label = query.get("label", "")
+        if "pipeline" in query or "effects" in query:
+            pipeline = query.get("pipeline") or wanted.pipeline
+            if self.desk.project.pipeline(pipeline) is None:
+                return self._missing(f"there is no pipeline '{pipeline}'")
+            effects = query.get("effects") or wanted.effects
+            other = Wanted(pipeline, wanted.frame, wanted.values, effects, wanted.size)
+            data = await self._asked("render_other", other, _OTHER_STEPS, label)
+        else:
+            data = await self._asked("keep", label)
+        return Response(data, media_type="image/png", headers=_HEADERS)
+
+    async def compare(self, request: Request) -> Response:
+        data, figures = await self._asked("compare")
+        return JSONResponse({"figures": figures, "difference": data.hex()}, headers=_HEADERS)
+
+    async def export(self, request: Request) -> Response:
+        kind = request.path_params["kind"]
+        if kind == "picture.png":
+            return await self.picture(request)
+        if kind == "picture.exr":
+            data = await self._asked("export_exr")
+            return Response(data, media_type="image/x-exr", headers=_HEADERS)
+        if kind == "frames.zip":
+            first = int(request.query_params.get("first", 0))
+            last = int(request.query_params.get("last", 0))
+            if not 0 <= first <= last < first + MOST_SEQUENCE:
+                return self._missing(f"frames {first} to {last}: at most {MOST_SEQUENCE}, from 0")
+            data = await self._asked("sequence", self.desk.wanted(), first, last)
+            return Response(data, media_type="application/zip", headers=_HEADERS)
+        if kind == "camera.txt":
+            return PlainTextResponse(camera_element(self.desk), headers=_HEADERS)
+        return self._missing(f"'{kind}' cannot be exported")
+
+    async def measure(self, request: Request) -> Response:
+        """Start ``nau-cost``, or say how far it is."""
+        if request.method == "POST":
+            self.cost.start(self.desk.pipeline)
+        return JSONResponse(self.cost.state(), headers=_HEADERS)
+
+    async def measured(self, request: Request) -> Response:
+        page = self.cost.page()
+        if page is None:
+            return self._missing("nothing has been measured yet")
+        return Response(page, media_type="text/html", headers=_HEADERS)
+
+
+def _said(work: Callable[[Request], Awaitable[Response]]) -> Callable[..., Awaitable[Response]]:
+    """What is wrong with a request as a text, not as a failure of the server."""
+
+    async def answer(request: Request) -> Response:
+        try:
+            return await work(request)
+        except (Refused, Lost, NauError, ValueError) as problem:
+            return PlainTextResponse(f"{problem}\n", status_code=409, headers=_HEADERS)
+
+    return answer
+
+
+def make_app(desk: Desk, director: Director, token: str) -> Any:
+    """The application (ASGI); ``director`` lives as long as it."""
+    scratch = tempfile.TemporaryDirectory(prefix="nau-view-")
+    site = Site(desk, director, Path(scratch.name))
+
+    @contextlib.asynccontextmanager
+    async def life(_: Starlette) -> AsyncIterator[None]:
+        site.windows.begin()
+        director.start()
+        yield
+        site.cost.stop()
+        await asyncio.to_thread(director.close)
+        scratch.cleanup()
+
+    def route(path: str, work: Callable[[Request], Awaitable[Response]], *methods: str) -> Route:
+        return Route(f"/{token}/{path}", _said(work), methods=[*methods] or ["GET"])
+
+    routes = [
+        route("", site.static),
+        route("static/{name}", site.static),
+        WebSocketRoute(f"/{token}/live", site.live),
+        route("picture.png", site.picture),
+        route("thumbnails", site.thumbnails),
+        route("target.png", site.target),
+        route("pixel", site.pixel),
+        route("keep", site.keep, "POST"),
+        route("compare", site.compare),
+        route("export/{kind}", site.export),
+        route("cost", site.measure, "GET", "POST"),
+        route("cost.html", site.measured),
+    ]
+    return Gate(Starlette(routes=routes, lifespan=life), token)

@@ -1,0 +1,95 @@
+"""The gallery of the site: every sample project with its picture, graph, time and rays."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+from nau_py.api import load, plan
+from nau_py.graph.export import to_svg
+from nau_py.model.linked import Project
+from nau_py.process.files import write_bytes, write_text
+from nau_py.reporting.output import png
+from nau_py.run.renderer import Frame, Renderer
+
+
+def sample_projects(root: Path) -> list[Path]:
+    """The project files of a repository's samples: the demos first, then the course."""
+    found = sorted((root / "projects").glob("*/project.xml"))
+    return found + sorted((root / "projects").glob("course/*/project.xml"))
+
+
+def build_gallery(root: Path, out: Path) -> Iterator[str]:
+    """Render the samples of ``root`` and write ``index.md`` and pictures into ``out``; yields what
+    is done, a project at a time. Raises :class:`~nau_py.diagnostics.errors.NauError`."""
+    out.mkdir(parents=True, exist_ok=True)
+    lines = [
+        "# Gallery",
+        "",
+        "Every sample project: its picture, its passes, and what they cost on the machine that "
+        "built this page.",
+        "",
+    ]
+    for file in sample_projects(root):
+        project = load(file)
+        renderer = Renderer(project)
+        try:
+            frame = renderer.render()
+        finally:
+            renderer.close()
+        name = "_".join(file.parent.relative_to(root / "projects").parts)
+        write_bytes(out / f"{name}.png", png(frame.image))
+        write_text(out / f"{name}.svg", to_svg(plan(project)))
+        lines += _entry(root, file, project, frame, name)
+        yield f"{name}: {frame.report['frames'][-1]['ms']:.0f} ms"
+    write_text(out / "index.md", "\n".join(lines))
+
+
+def _entry(root: Path, file: Path, project: Project, frame: Frame, name: str) -> list[str]:
+    folder = file.parent.relative_to(root).as_posix()
+    report = frame.report["frames"][-1]
+    readme = file.parent / "README.md"
+    text = readme.read_text("utf-8") if readme.exists() else ""
+    title = next(iter(re.findall(r"^# (.+)$", text, re.MULTILINE)), project.name)
+    height, width = frame.image.shape[:2]
+    about = f"{width} × {height}, {report['ms']:,.0f} ms. Files: [README](../{folder}/README.md)"
+    return [
+        f"## {title}",
+        "",
+        f"![{title}]({name}.png)",
+        "",
+        f"{about}, [project.xml](../{folder}/project.xml).",
+        "",
+        "| pass | class | ms | pixels | rays | est. error |",
+        "|---|---|--:|--:|---|--:|",
+        *(_row(item) for item in report["passes"]),
+        "",
+        f"![passes and targets of {title}]({name}.svg)",
+        "",
+    ]
+
+
+def _row(item: dict[str, object]) -> str:
+    if item["status"] != "run":
+        return f"| {item['name']} | {item['class']} | left out: {item['reason']} | | | |"
+    rays = item["rays"]
+    assert isinstance(rays, dict)
+    listed = ", ".join(f"{kind} {count:,}" for kind, count in rays.items())
+    error = item.get("est_error")
+    said = "" if error is None else f"{error:.4f}"
+    return (
+        f"| {item['name']} | {item['class']} | {item['ms']:,.1f} | {item['pixels']:,} | {listed} "
+        f"| {said} |"
+    )
+
+
+def copy_sources(root: Path, out: Path) -> None:
+    """What the site's pages are and link to, in the folders that it has in the repository: the
+    README as the first page, docs, and the samples without their models."""
+    shutil.copytree(root / "docs", out / "docs", ignore=shutil.ignore_patterns("__pycache__"))
+    skip = shutil.ignore_patterns("models", "__pycache__", "*.nau_cache")
+    shutil.copytree(root / "projects", out / "projects", ignore=skip)
+    shutil.copytree(root / "materials", out / "materials")
+    write_text(out / "index.md", (root / "README.md").read_text("utf-8"))
