@@ -17,6 +17,7 @@ NAV: list[dict[str, Any]] = [
         "Guide": [
             {"Install": "docs/install.md"},
             {"First project": "docs/first-project.md"},
+            {"Project format": "docs/format.md"},
             {"Where to trace": "docs/selection.md"},
             {"Ray programs": "docs/programs.md"},
             {"Effects on demand": "docs/effects-on-demand.md"},

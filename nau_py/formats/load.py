@@ -1,4 +1,4 @@
-"""Reading a project with everything that it names, in Nau's load order (nau-format.md, 3.1)."""
+"""Reading a project with everything that it names, in Nau's load order (docs/format.md, 3.1)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Child tags and XML attributes that set an attribute of an attribute set (nau-format.md, 2)."""
+"""Child tags and XML attributes that set an attribute of an attribute set (docs/format.md, 2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Attribute sets: the properties that an object type has, as data (nau-format.md, section 9).
+"""Attribute sets: the properties that an object type has, as data (docs/format.md, section 9).
 
 They decide which child tags a file may write, which ``component`` a ``valueof`` may name, what an
 unset value is, and what the reference page says.

@@ -1,4 +1,4 @@
-"""Buffers of a material library (nau-format.md, 6.6)."""
+"""Buffers of a material library (docs/format.md, 6.6)."""
 
 from __future__ import annotations
 

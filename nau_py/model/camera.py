@@ -1,4 +1,4 @@
-"""Cameras (nau-format.md, 3.7)."""
+"""Cameras (docs/format.md, 3.7)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sensors, interpolators and routes (nau-format.md, 3.8)."""
+"""Sensors, interpolators and routes (docs/format.md, 3.8)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The user interface that a project declares (nau-format.md, 4.8)."""
+"""The user interface that a project declares (docs/format.md, 4.8)."""
 
 from __future__ import annotations
 

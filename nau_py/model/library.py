@@ -1,4 +1,4 @@
-"""Material libraries (nau-format.md, section 6)."""
+"""Material libraries (docs/format.md, section 6)."""
 
 from __future__ import annotations
 

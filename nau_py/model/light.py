@@ -1,4 +1,4 @@
-"""Lights (nau-format.md, 3.6)."""
+"""Lights (docs/format.md, 3.6)."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ class Project:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Window width and height, pixels (nau-format.md, 3.1)."""
+        """Window width and height, pixels (docs/format.md, 3.1)."""
         width, height = self.file.width, self.file.height
         if width is None or height is None:
             return DEFAULT_SIZE
@@ -166,7 +166,7 @@ class Project:
         """The render target (library name, node) that a pass draws into; None for the window.
 
         ``sameas`` takes that of the last pass of the name that stands before this one, in any
-        pipeline (nau-format.md, 4.3).
+        pipeline (docs/format.md, 4.3).
         """
         reference = pass_.renderTarget
         if reference is None:

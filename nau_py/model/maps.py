@@ -1,4 +1,4 @@
-"""Material maps and injection maps of a pass (nau-format.md, 4.6 and 4.7)."""
+"""Material maps and injection maps of a pass (docs/format.md, 4.6 and 4.7)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Materials: colours, textures, buffers, state, shader and uniform sources (nau-format.md, 6.8)."""
+"""Materials: colours, textures, buffers, state, shader, uniforms (docs/format.md, 6.8)."""
 
 from __future__ import annotations
 

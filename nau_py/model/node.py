@@ -68,7 +68,7 @@ class Variants:
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Child tags named like the attributes of an attribute set (nau-format.md, section 2)."""
+    """Child tags named like the attributes of an attribute set (docs/format.md, section 2)."""
 
     type: str
     doc: str = ""

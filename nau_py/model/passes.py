@@ -1,4 +1,4 @@
-"""What every pass class has in common (nau-format.md, 4.3 and 4.5)."""
+"""What every pass class has in common (docs/format.md, 4.3 and 4.5)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Physics libraries (nau-format.md, section 5): read and checked, not simulated."""
+"""Physics libraries (docs/format.md, section 5): read and checked, not simulated."""
 
 from __future__ import annotations
 

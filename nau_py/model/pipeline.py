@@ -1,4 +1,4 @@
-"""Pipelines (nau-format.md, 4.1 and 4.2)."""
+"""Pipelines (docs/format.md, 4.1 and 4.2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The project file (nau-format.md, section 3)."""
+"""The project file (docs/format.md, section 3)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Constant(Node):
 
 
 class UserAttribute(Node):
-    """An attribute that the project adds to an object type (nau-format.md, 3.3)."""
+    """An attribute that the project adds to an object type (docs/format.md, 3.3)."""
 
     type: Annotated[str | None, Attr(doc="Object type.", required=True, ref="object type")] = None
     name: Annotated[str | None, Attr(doc="Attribute name.", required=True)] = None

@@ -1,4 +1,4 @@
-"""The raytrace pass: ray types, programs and parameters (nau-format.md, section 7).
+"""The raytrace pass: ray types, programs and parameters (docs/format.md, section 7).
 
 Element names are those of Nau's class ``rt``; the ``optix*`` spelling is upgraded to them.
 """

@@ -31,7 +31,7 @@ def qualified_reference(
 ) -> str:
     """The qualified name (``lib::name``, or the name of a plain kind) that attribute ``marker`` of
     ``node`` refers to. ``library``: the one that the node stands in. ``buffers``: known buffers,
-    which are looked up in a second library too (nau-format.md, 6.8)."""
+    which are looked up in a second library too (docs/format.md, 6.8)."""
     if marker.ref in PLAIN_KINDS or ("::" in value and marker.ref not in _OWN_LIBRARY):
         return value
     given = getattr(node, marker.library) if marker.library else None

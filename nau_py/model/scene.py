@@ -1,4 +1,4 @@
-"""Scenes: what is drawn (nau-format.md, 3.4)."""
+"""Scenes: what is drawn (docs/format.md, 3.4)."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _INLINE_SIZES = "SLICES, STACKS of a SPHERE; DIVISIONS, LENGTH of a GRID."
 
 
 class Geometry(Configured):
-    """A built-in primitive (nau-format.md, 10.7)."""
+    """A built-in primitive (docs/format.md, 10.7)."""
 
     name: Annotated[str | None, Attr(doc="Object and mesh name.", required=True)] = None
     type: Annotated[str | None, Attr(doc="Primitive.", required=True, values=PRIMITIVES)] = None
@@ -69,7 +69,7 @@ VERTEX_ATTRIBUTES = (
     "triangleID",
     *(f"custom{k}" for k in range(6)),
 )
-"""Names of vertex attributes (nau-format.md, 8.4)."""
+"""Names of vertex attributes (docs/format.md, 8.4)."""
 
 
 class BufferAttribute(Node):

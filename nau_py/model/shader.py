@@ -1,4 +1,4 @@
-"""Shader programs of a material library (nau-format.md, 6.5)."""
+"""Shader programs of a material library (docs/format.md, 6.5)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fixed-function states of materials (nau-format.md, 6.4)."""
+"""Fixed-function states of materials (docs/format.md, 6.4)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Render targets (nau-format.md, 6.1)."""
+"""Render targets (docs/format.md, 6.1)."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class RenderTarget(Configured):
 
     @property
     def depth_name(self) -> str:
-        """The name of its depth texture, the hidden one included (nau-format.md, 6.1)."""
+        """The name of its depth texture, the hidden one included (docs/format.md, 6.1)."""
         attachment = self.depth or self.depthStencil
         return (attachment.name if attachment else None) or f"{self.name}_depth"
 

@@ -1,4 +1,4 @@
-"""Textures of a material library (nau-format.md, 6.3 and 6.7)."""
+"""Textures of a material library (docs/format.md, 6.3 and 6.7)."""
 
 from __future__ import annotations
 

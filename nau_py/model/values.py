@@ -1,4 +1,4 @@
-"""Nau's data types and the way its loader turns text into values (nau-format.md, 1.3 and 2)."""
+"""Nau's data types and the way its loader turns text into values (docs/format.md, 1.3 and 2)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Scalar = bool | int | float | str
 
 
 class DataType(StrEnum):
-    """The data types that a project file can write (nau-format.md, section 2)."""
+    """The data types that a project file can write (docs/format.md, section 2)."""
 
     INT = "INT"
     IVEC2 = "IVEC2"

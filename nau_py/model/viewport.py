@@ -1,4 +1,4 @@
-"""Viewports (nau-format.md, 3.5)."""
+"""Viewports (docs/format.md, 3.5)."""
 
 from __future__ import annotations
 

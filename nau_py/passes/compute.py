@@ -1,4 +1,4 @@
-"""Class ``compute``: runs a compute shader (nau-format.md, 4.4)."""
+"""Class ``compute``: runs a compute shader (docs/format.md, 4.4)."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def viewport_names(pass_: Pass) -> list[str]:
 
 
 def target_and_rect(pass_: Pass, frame: FrameContext, uses_camera: bool) -> tuple[Target, Rect]:
-    """Where a pass draws (nau-format.md, 11.5)."""
+    """Where a pass draws (docs/format.md, 11.5)."""
     session = frame.session
     owner = frame.project.target_of(pass_)
     names = viewport_names(pass_)
@@ -148,7 +148,7 @@ def identity() -> F64:
 
 
 def process(items: Sequence[ProcessTexture | ProcessBuffer], frame: FrameContext) -> None:
-    """Run pre- or post-process items (nau-format.md, 4.5)."""
+    """Run pre- or post-process items (docs/format.md, 4.5)."""
     resources = frame.session.resources
     for item in items:
         settings = {name: setting.parts[0] for name, setting in item.settings.items()}

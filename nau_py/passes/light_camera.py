@@ -1,4 +1,4 @@
-"""The camera of a light that a depth map is drawn from (nau-format.md, 4.4)."""
+"""The camera of a light that a depth map is drawn from (docs/format.md, 4.4)."""
 
 from __future__ import annotations
 

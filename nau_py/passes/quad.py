@@ -1,4 +1,4 @@
-"""Class ``quad``: fills its viewport with a texture or a material (nau-format.md, 4.4)."""
+"""Class ``quad``: fills its viewport with a texture or a material (docs/format.md, 4.4)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Classes ``optixPrime`` and ``embree``: a buffer of rays to one of hits (nau-format.md, 7.3)."""
+"""Classes ``optixPrime`` and ``embree``: a buffer of rays to one of hits (docs/format.md, 7.3)."""
 
 from __future__ import annotations
 

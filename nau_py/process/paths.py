@@ -1,4 +1,4 @@
-"""Paths as projects write them: backslashes and the wrong letter case (nau-format.md, 1.5)."""
+"""Paths as projects write them: backslashes and the wrong letter case (docs/format.md, 1.5)."""
 
 from __future__ import annotations
 

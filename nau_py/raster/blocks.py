@@ -1,4 +1,4 @@
-"""Uniform blocks: one buffer per block name, shared by every program (nau-format.md, 6.8)."""
+"""Uniform blocks: one buffer per block name, shared by every program (docs/format.md, 6.8)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Buffers of material libraries: size and initial content (nau-format.md, 6.6)."""
+"""Buffers of material libraries: size and initial content (docs/format.md, 6.6)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Drawing: materials prepared, geometry sent, in Nau's order (nau-format.md, 11.6)."""
+"""Drawing: materials prepared, geometry sent, in Nau's order (docs/format.md, 11.6)."""
 
 from __future__ import annotations
 
@@ -132,7 +132,7 @@ class _Command:
 def _command(context: DrawContext, count: int, indexed: bool) -> _Command:
     """How to draw ``count`` vertices: as the pass says, or its buffer of draw commands.
 
-    As in Nau the count is written into the buffer before each draw (nau-format.md, 11.6). The
+    As in Nau the count is written into the buffer before each draw (docs/format.md, 11.6). The
     other values are read back and not left to the GPU: all groups of a mesh share one buffer of
     indices here, so ``first`` has to be moved.
     """

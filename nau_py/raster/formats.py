@@ -1,4 +1,4 @@
-"""Nau's internal formats as OpenGL knows them (nau-format.md, 6.2)."""
+"""Nau's internal formats as OpenGL knows them (docs/format.md, 6.2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Attributes of textures, buffers, targets, states and scenes as values (nau-format.md, 8.2, 9)."""
+"""Attributes of textures, buffers, targets, states, scenes as values (docs/format.md, 8.2, 9)."""
 
 from __future__ import annotations
 

@@ -224,7 +224,7 @@ class Resources:
         return self.device.ctx.buffer(bytes(16 * most)) if most > 0 else None
 
     def clear_buffers_by_frame(self) -> None:
-        """Fill the buffers whose CLEAR is BY_FRAME with zero (nau-format.md, 11.1)."""
+        """Fill the buffers whose CLEAR is BY_FRAME with zero (docs/format.md, 11.1)."""
         for made in self._cleared:
             made.clear()
 

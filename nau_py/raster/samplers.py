@@ -1,4 +1,4 @@
-"""Sampler objects from Nau's sampler settings (nau-format.md, 9.7)."""
+"""Sampler objects from Nau's sampler settings (docs/format.md, 9.7)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where uniform values come from: types, contexts and components (nau-format.md, 8 and 9)."""
+"""Where uniform values come from: types, contexts and components (docs/format.md, 8 and 9)."""
 
 from __future__ import annotations
 

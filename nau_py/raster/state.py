@@ -1,4 +1,4 @@
-"""STATE attributes and pass-level stencil as OpenGL state (nau-format.md, 9.5 and 11.4)."""
+"""STATE attributes and pass-level stencil as OpenGL state (docs/format.md, 9.5 and 11.4)."""
 
 from __future__ import annotations
 

@@ -103,7 +103,7 @@ def make_texture(
 ) -> Texture:
     """Zero-filled storage of internal format ``name``: cube map, multisample, 3D, array or 2D.
 
-    The kind is chosen in that order (nau-format.md, 6.3); ``depth`` 0 is none. A cube map is
+    The kind is chosen in that order (docs/format.md, 6.3); ``depth`` 0 is none. A cube map is
     ``width`` on each side; a multisample texture has one level.
     """
     fmt = pixel_format(name)

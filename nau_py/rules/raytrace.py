@@ -112,7 +112,7 @@ T020 = rule(
     "T020",
     WARNING,
     "Program reads beyond its record",
-    "Records of hits have 112 bytes, those of ray generation and misses 16 (nau-format.md, 7.1).",
+    "Records of hits have 112 bytes, those of ray generation and misses 16 (docs/format.md, 7.1).",
     "((HitData *)optixGetSbtDataPointer())->mine, at byte 128",
     "a member of Nau's own structure, or a parameter of rtGlobalParams",
 )

@@ -1,4 +1,4 @@
-"""Whose turn it is: pipelines that end, and the ones after them (nau-format.md, 11.2)."""
+"""Whose turn it is: pipelines that end, and the ones after them (docs/format.md, 11.2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Attributes by name while a project runs: Lua's getAttr and setAttr (nau-format.md, 12)."""
+"""Attributes by name while a project runs: Lua's getAttr and setAttr (docs/format.md, 12)."""
 
 from __future__ import annotations
 

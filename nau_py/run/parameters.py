@@ -1,4 +1,4 @@
-"""What a project's ``interface`` lets a user change (nau-format.md, 4.8), by name."""
+"""What a project's ``interface`` lets a user change (docs/format.md, 4.8), by name."""
 
 from __future__ import annotations
 

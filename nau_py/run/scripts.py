@@ -1,4 +1,4 @@
-"""Lua hooks of passes and pipelines (nau-format.md, 4.3 and 12)."""
+"""Lua hooks of passes and pipelines (docs/format.md, 4.3 and 12)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Triangles with their neighbours, for geometry shaders (nau-format.md, 10.9)."""
+"""Triangles with their neighbours, for geometry shaders (docs/format.md, 10.9)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A ``<scene>`` element to scene objects, by Nau's scene types (nau-format.md, 3.4)."""
+"""A ``<scene>`` element to scene objects, by Nau's scene types (docs/format.md, 3.4)."""
 
 from __future__ import annotations
 

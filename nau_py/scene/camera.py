@@ -1,4 +1,4 @@
-"""Cameras as they are while a frame is drawn (nau-format.md, 9.1)."""
+"""Cameras as they are while a frame is drawn (docs/format.md, 9.1)."""
 
 from __future__ import annotations
 

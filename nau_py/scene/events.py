@@ -1,4 +1,4 @@
-"""Sensors, interpolators and routes on the simulated clock (nau-format.md, 3.8 and 11.8)."""
+"""Sensors, interpolators and routes on the simulated clock (docs/format.md, 3.8 and 11.8)."""
 
 from __future__ import annotations
 

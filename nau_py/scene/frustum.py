@@ -1,4 +1,4 @@
-"""The hidden scene that every camera has: the lines of its frustum (nau-format.md, 3.7)."""
+"""The hidden scene that every camera has: the lines of its frustum (docs/format.md, 3.7)."""
 
 from __future__ import annotations
 

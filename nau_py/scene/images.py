@@ -1,4 +1,4 @@
-"""Image files as arrays by Nau's decoding rules (nau-format.md, 6.3)."""
+"""Image files as arrays by Nau's decoding rules (docs/format.md, 6.3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lights as they are while a frame is drawn (nau-format.md, 9.2)."""
+"""Lights as they are while a frame is drawn (docs/format.md, 9.2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which material a pass draws each material name with (nau-format.md, 4.6 and 4.7)."""
+"""Which material a pass draws each material name with (docs/format.md, 4.6 and 4.7)."""
 
 from __future__ import annotations
 

@@ -155,7 +155,7 @@ def from_model(project: Project, source: ModelMaterial) -> RenderMaterial:
 
 
 def from_library(project: Project, library: str, node: Material) -> RenderMaterial:
-    """The material that a library file defines (nau-format.md, 6.8)."""
+    """The material that a library file defines (docs/format.md, 6.8)."""
     material = default_material(project, node.name or "")
     material.library = library
     if node.color is not None:

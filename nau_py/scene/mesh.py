@@ -24,7 +24,7 @@ class Group:
 
 @dataclass(slots=True)
 class Mesh:
-    """``attributes`` maps names (nau-format.md, 8.4) to float32 arrays of shape (n, 4).
+    """``attributes`` maps names (docs/format.md, 8.4) to float32 arrays of shape (n, 4).
 
     Object space. Row i of every attribute belongs to vertex i.
     """
@@ -95,7 +95,7 @@ def pad4(values: NDArray[np.floating], w: float) -> F32:
 def transform_mesh(mesh: Mesh, matrix: F64) -> Mesh:
     """Bake ``matrix`` into a copy: positions, and normals by the inverse transpose.
 
-    Tangents are left alone, as Nau does (nau-format.md, 13.4 #83).
+    Tangents are left alone, as Nau does (docs/format.md, 13.4 #83).
     """
     attributes = dict(mesh.attributes)
     points = mesh.positions.astype(np.float64) @ matrix.T

@@ -1,4 +1,4 @@
-"""Pose animation: vertices moved by weighted offsets (nau-format.md, 10.5 and 11.8)."""
+"""Pose animation: vertices moved by weighted offsets (docs/format.md, 10.5 and 11.8)."""
 
 from __future__ import annotations
 

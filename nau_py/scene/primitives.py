@@ -1,4 +1,4 @@
-"""Nau's built-in primitives (nau-format.md, 10.7)."""
+"""Nau's built-in primitives (docs/format.md, 10.7)."""
 
 from __future__ import annotations
 

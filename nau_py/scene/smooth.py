@@ -1,4 +1,4 @@
-"""Normals for models without them (nau-format.md, 10.2)."""
+"""Normals for models without them (docs/format.md, 10.2)."""
 
 from __future__ import annotations
 

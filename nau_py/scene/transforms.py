@@ -1,4 +1,4 @@
-"""Matrices: float64 (4, 4), column vectors, GL clip space (nau-format.md, 9.11 and 9.12)."""
+"""Matrices: float64 (4, 4), column vectors, GL clip space (docs/format.md, 9.11 and 9.12)."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def transform_of(
 
 
 def perspective(fov_degrees: float, aspect: float, near: float, far: float) -> F64:
-    """OpenGL perspective projection; ``fov_degrees`` is vertical (nau-format.md, 9.12)."""
+    """OpenGL perspective projection; ``fov_degrees`` is vertical (docs/format.md, 9.12)."""
     f = 1.0 / tan(radians(fov_degrees) / 2)
     matrix = np.zeros((4, 4))
     matrix[0, 0] = f / aspect

@@ -1,4 +1,4 @@
-"""Viewports in pixels (nau-format.md, 9.3)."""
+"""Viewports in pixels (docs/format.md, 9.3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Volumes of VTK's legacy format (nau-format.md, 6.3; *VTK File Formats*, "Simple Legacy")."""
+"""Volumes of VTK's legacy format (docs/format.md, 6.3; *VTK File Formats*, "Simple Legacy")."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nau's XML dialect made well-formed (nau-format.md, 1.1), with every position kept.
+"""Nau's XML dialect made well-formed (docs/format.md, 1.1), with every position kept.
 
 The scanner re-emits each tag with quoted, escaped attribute values and drops comments,
 declarations and stray text. It records where each start tag and attribute value stood, in document

@@ -1,4 +1,4 @@
-"""Nau's XML dialect: each deviation from XML 1.0 in nau-format.md 1.1, and its errors."""
+"""Nau's XML dialect: each deviation from XML 1.0 in docs/format.md 1.1, and its errors."""
 
 from __future__ import annotations
 

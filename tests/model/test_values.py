@@ -1,4 +1,4 @@
-"""Nau's conversions (nau-format.md, 1.3 and 1.4)."""
+"""Nau's conversions (docs/format.md, 1.3 and 1.4)."""
 
 from __future__ import annotations
 

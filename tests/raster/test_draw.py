@@ -56,7 +56,7 @@ def render(
 
 
 def test_clear_colour_and_scissor(folder: Folder) -> None:
-    """A viewport of the left half: only that half is cleared (nau-format.md, 11.4)."""
+    """A viewport of the left half: only that half is cleared (docs/format.md, 11.4)."""
     passes = '<pass name="p"><viewport name="V"/></pass>'
     frame = render(
         folder,
@@ -133,7 +133,7 @@ def test_integer_targets_are_cleared_as_integers(folder: Folder) -> None:
 def test_uniform_sources(
     folder: Folder, declaration: str, source: str, expected: tuple[float, ...]
 ) -> None:
-    """Values reach uniforms of shorter and other types (nau-format.md, 6.8)."""
+    """Values reach uniforms of shorter and other types (docs/format.md, 6.8)."""
     members = {
         "vec2": "u, 0, 0",
         "vec3": "u, 0",
@@ -175,7 +175,7 @@ def test_states_apply_to_materials(folder: Folder) -> None:
 
 
 def test_the_default_material_is_lit_as_nau_lights_it(folder: Folder) -> None:
-    """diffuse · light · cos + 0.3 · diffuse: 0.8 + 0.24, clamped (nau-format.md, 8.5)."""
+    """diffuse · light · cos + 0.3 · diffuse: 0.8 + 0.24, clamped (docs/format.md, 8.5)."""
     passes = (
         '<pass name="p"><camera name="C"/><scenes><scene name="S"/></scenes>'
         '<lights><light name="Sun"/></lights></pass>'
@@ -291,7 +291,7 @@ def test_alpha_is_tested_and_textures_are_lower_left(folder: Folder) -> None:
 
 
 def test_uniform_blocks_are_shared_by_name(folder: Folder) -> None:
-    """``valueof block=``: members of every type at the driver's offsets (nau-format.md, 6.8)."""
+    """``valueof block=``: members of every type at the driver's offsets (docs/format.md, 6.8)."""
     frag = (
         "#version 330\nlayout(std140) uniform Lights { float f; vec3 dir; mat4 m; vec4 col; };\n"
         "out vec4 c;\nvoid main() { c = vec4(dir.z, m[3][2], col.g, f); }\n"
@@ -357,7 +357,7 @@ def test_buffers_begin_with_their_file_and_compute_reads_them(folder: Folder) ->
 
 
 def test_a_uniform_takes_an_attribute_of_a_named_pass(folder: Folder) -> None:
-    """Context ``pipeline#pass`` (nau-format.md, 8.2): the other pass's value, not the own one."""
+    """Context ``pipeline#pass`` (docs/format.md, 8.2): the other pass's value, not the own one."""
     value = '<DEPTH_CLEAR_VALUE value="{}"/>'
     passes = QUAD.format('<viewport name="V"/>' + value.format("0.2")).replace('"q"', '"first"')
     passes += QUAD.format('<viewport name="V"/>' + value.format("0.6"))

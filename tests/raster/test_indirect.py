@@ -1,4 +1,4 @@
-"""Draw commands of a buffer: nau-format.md, 4.3 and 11.6; OpenGL 4.6, section 10.4."""
+"""Draw commands of a buffer: docs/format.md, 4.3 and 11.6; OpenGL 4.6, section 10.4."""
 
 from __future__ import annotations
 

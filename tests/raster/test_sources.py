@@ -1,4 +1,4 @@
-"""Values of buffers, arrays, targets, states, scenes and process items: nau-format.md, 8.2 and 9.
+"""Values of buffers, arrays, targets, states, scenes and process items: docs/format.md, 8.2 and 9.
 
 The numbers follow from what the project below writes; OpenGL's from its specification.
 """

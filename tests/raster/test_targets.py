@@ -1,4 +1,4 @@
-"""Multisampled targets and cube maps to draw into: nau-format.md, 6.1; OpenGL 4.6, 9.4 and 14.3."""
+"""Multisampled targets and cube maps to draw into: docs/format.md, 6.1; OpenGL 4.6, 9.4 and 14.3."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tessellation stages on patches: nau-format.md, 10.6 and 11.6."""
+"""Tessellation stages on patches: docs/format.md, 10.6 and 11.6."""
 
 from __future__ import annotations
 

@@ -156,7 +156,7 @@ def test_samples_that_are_not_finite_are_counted_and_dropped(
 
 
 def test_prefixes_and_exact_names_bind_programs(folder: Folder, ray_project: RayProject) -> None:
-    """Exact entry, then the first prefix in byte order, then the default (nau-format.md, 7.1)."""
+    """Exact entry, then the first prefix in byte order, then the default (docs/format.md, 7.1)."""
     names = ["GradeA", "GradeB", "Grade", "Other"]
     folder.mtl("scene", {n: {} for n in names})
     folder.obj(

@@ -1,4 +1,4 @@
-"""Physics libraries are checked and not simulated: nau-format.md, section 5."""
+"""Physics libraries are checked and not simulated: docs/format.md, section 5."""
 
 from __future__ import annotations
 

@@ -91,7 +91,7 @@ def test_a_closed_renderer_starts_again(folder: Folder) -> None:
 
 
 def test_sameas_draws_into_the_target_of_the_last_earlier_pass(folder: Folder) -> None:
-    """The pass of the same name that stands later does not count (nau-format.md, 4.3)."""
+    """The pass of the same name that stands later does not count (docs/format.md, 4.3)."""
     same = (
         '<pass name="same" class="quad"><material name="readB" fromLibrary="L"/>'
         '<renderTarget sameas="ping"/></pass>'
@@ -151,7 +151,7 @@ def test_errors_of_lint_stop_the_renderer(folder: Folder) -> None:
 
 
 def test_a_target_follows_an_explicit_viewport(folder: Folder) -> None:
-    """nau-format.md 11.5: the render target is resized to the viewport's pixels."""
+    """docs/format.md 11.5: the render target is resized to the viewport's pixels."""
     passes = PONG.replace("</pass>", '<viewport name="V"/></pass>') + SHOW
     project(folder, passes)
     text = (folder.path / "project.xml").read_text()

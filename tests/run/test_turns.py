@@ -1,4 +1,4 @@
-"""Pipelines in turn: nau-format.md, 11.2."""
+"""Pipelines in turn: docs/format.md, 11.2."""
 
 from __future__ import annotations
 

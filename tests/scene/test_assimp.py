@@ -1,4 +1,4 @@
-"""Models that Assimp reads (nau-format.md, 10.3)."""
+"""Models that Assimp reads (docs/format.md, 10.3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""OBJ and MTL by Nau's rules (nau-format.md, 10.2)."""
+"""OBJ and MTL by Nau's rules (docs/format.md, 10.2)."""
 
 from __future__ import annotations
 

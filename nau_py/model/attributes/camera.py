@@ -1,4 +1,4 @@
-"""CAMERA attributes (nau-format.md, 9.1)."""
+"""CAMERA attributes (docs/format.md, 9.1)."""
 
 from __future__ import annotations
 

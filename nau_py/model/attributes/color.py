@@ -1,4 +1,4 @@
-"""COLOR attributes, the colours of a material (nau-format.md, 9.4)."""
+"""COLOR attributes, the colours of a material (docs/format.md, 9.4)."""
 
 from __future__ import annotations
 

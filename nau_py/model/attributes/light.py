@@ -1,4 +1,4 @@
-"""LIGHT attributes (nau-format.md, 9.2)."""
+"""LIGHT attributes (docs/format.md, 9.2)."""
 
 from __future__ import annotations
 

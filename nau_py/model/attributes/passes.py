@@ -1,4 +1,4 @@
-"""PASS, process items and RENDER_TARGET attributes (nau-format.md, 9.8 and 9.9)."""
+"""PASS, process items and RENDER_TARGET attributes (docs/format.md, 9.8 and 9.9)."""
 
 from __future__ import annotations
 

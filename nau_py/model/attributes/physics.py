@@ -1,4 +1,4 @@
-"""PHYSICS_MANAGER and PHYSICS_MATERIAL attributes (nau-format.md, section 5).
+"""PHYSICS_MANAGER and PHYSICS_MATERIAL attributes (docs/format.md, section 5).
 
 Most are registered by the engine's plug-ins for Bullet and PhysX; here they are only read. Units
 are those of the scene, kilograms and seconds.

@@ -1,4 +1,4 @@
-"""RENDERER attributes (nau-format.md, 9.10)."""
+"""RENDERER attributes (docs/format.md, 9.10)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""SCENE, SCENE_OBJECT, SPHERE and GRID attributes (nau-format.md, 9.11)."""
+"""SCENE, SCENE_OBJECT, SPHERE and GRID attributes (docs/format.md, 9.11)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""STATE attributes (nau-format.md, 9.5)."""
+"""STATE attributes (docs/format.md, 9.5)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TEXTURE and ARRAY_OF_TEXTURES attributes, and the internal formats (nau-format.md, 6.2, 9.6)."""
+"""TEXTURE and ARRAY_OF_TEXTURES attributes, and the internal formats (docs/format.md, 6.2, 9.6)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""VIEWPORT attributes (nau-format.md, 9.3)."""
+"""VIEWPORT attributes (docs/format.md, 9.3)."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """What programs and pass expect of each other: records, payloads, entries, parameters.
 
-nau-format.md, 7.1 and 13.3.
+docs/format.md, 7.1 and 13.3.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Models that Assimp reads, by Nau's rules (nau-format.md, 10.3)."""
+"""Models that Assimp reads, by Nau's rules (docs/format.md, 10.3)."""
 
 from __future__ import annotations
 

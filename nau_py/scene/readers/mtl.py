@@ -1,4 +1,4 @@
-"""MTL material libraries by Nau's rules (nau-format.md, 10.2)."""
+"""MTL material libraries by Nau's rules (docs/format.md, 10.2)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nau's binary models, NBO and CBO (nau-format.md, 10.4): little-endian, without a header."""
+"""Nau's binary models, NBO and CBO (docs/format.md, 10.4): little-endian, without a header."""
 
 from __future__ import annotations
 

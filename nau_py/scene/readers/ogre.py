@@ -1,4 +1,4 @@
-"""Ogre mesh XML (nau-format.md, 10.5): submeshes, shared geometry, poses and their animation.
+"""Ogre mesh XML (docs/format.md, 10.5): submeshes, shared geometry, poses and their animation.
 
 Skeletons are read past: Nau keeps them, but moves nothing by them.
 """

@@ -1,4 +1,4 @@
-"""Bézier patches as text (nau-format.md, 10.6), for programs with tessellation stages."""
+"""Bézier patches as text (docs/format.md, 10.6), for programs with tessellation stages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Terrain: a vertex for each pixel of a height map (nau-format.md, 10.7)."""
+"""Terrain: a vertex for each pixel of a height map (docs/format.md, 10.7)."""
 
 from __future__ import annotations
 

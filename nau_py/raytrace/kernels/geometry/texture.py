@@ -1,4 +1,4 @@
-"""Texture look-ups: bilinear on level 0, Nau's wrap rules (nau-format.md, 9.7)."""
+"""Texture look-ups: bilinear on level 0, Nau's wrap rules (docs/format.md, 9.7)."""
 
 from __future__ import annotations
 

@@ -144,7 +144,7 @@ def default_look(
     material: Any,
     texel: V3,
 ) -> None:
-    """Nau's default material (nau-format.md, 8.5) by the first light, with shadows where the pass
+    """Nau's default material (docs/format.md, 8.5) by the first light, with shadows where the pass
     has a ray type for them; for Phong's models with the highlight SPECULAR cos^SHININESS. A light
     with a shape is the mean over its points."""
     diffuse = rgb(diffuse_of(material))

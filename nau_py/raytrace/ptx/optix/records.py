@@ -1,4 +1,4 @@
-"""Scenes and records of Nau's class ``rt``, to the byte (nau-format.md, 7.1)."""
+"""Scenes and records of Nau's class ``rt``, to the byte (docs/format.md, 7.1)."""
 
 from __future__ import annotations
 
