@@ -102,7 +102,7 @@ def stage_files(shader: Shader) -> list[Path]:
 
 
 def read_stage(shader: Shader, stage: str) -> StageSource | None:
-    """The concatenated files of a stage, with line directives between them (docs/format.md, 6.5)."""
+    """Concatenate the files of a stage with line directives between them (docs/format.md, 6.5)."""
     names = shader.files(stage)
     if not names:
         return None
