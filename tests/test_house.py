@@ -17,7 +17,7 @@ FOUNDATION = {"diagnostics", "syntax", "process", "plugins", "version"}
 ARROWS = {
     "diagnostics": {"rules"},
     "syntax": {"formats", "lsp"},
-    "process": {"model", "passes", "viewer", "raytrace/programs"},
+    "process": {"model", "passes", "viewer", "raytrace/programs", "raytrace/ptx"},
     "model": {"reporting"},
     "formats": {"model"},
     "graph": {"model"},

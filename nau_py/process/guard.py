@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from nau_py.diagnostics.diagnostic import Diagnostic, error
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import RaytracePass
-from nau_py.passes.ptx.guarded import MARKS, SLOTS
 from nau_py.raytrace.programs.source import launches_ptx
+from nau_py.raytrace.ptx.runtime.guarded import MARKS, SLOTS
 
 Words = NDArray[np.int64]
 _PERIOD = 0.1

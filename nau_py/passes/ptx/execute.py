@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from nau_py.diagnostics.diagnostic import warning
 from nau_py.model.effects import ALL, AUTO
 from nau_py.model.raytrace import RaytracePass
-from nau_py.passes.ptx.guarded import marks
 from nau_py.passes.ptx.optix import OptixState
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.rt import RtState
 from nau_py.passes.stages import Stages
 from nau_py.raytrace.ptx.optix.optix6 import STACK_OVERFLOW
 from nau_py.raytrace.ptx.runtime.frame import BUFFER_INDEX, NO_CALLABLE
+from nau_py.raytrace.ptx.runtime.guarded import open_marks
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, PassRecord, Session
@@ -85,7 +85,7 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
     launch = environment.begin(pass_, frame, target)
     launch.indices = pixels
     generate = pass_.rtEntryPoint and pass_.rtEntryPoint.rayGen
-    launch.marks = marks(
+    launch.marks = open_marks(
         f"project '{frame.project.name}', pass '{pass_.name}', program "
         f"'{generate and generate.proc}'",
         target.width,

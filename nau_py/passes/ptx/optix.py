@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.model.raytrace import GEOMETRY_KINDS, GeometryProgram, RaytracePass
-from nau_py.passes.ptx.guarded import marks
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
 from nau_py.passes.ptx.variables import UNITS
 from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.ptx.optix.optix6 import BUFFER, BUFFER_BYTES, PLAIN, STACK_OVERFLOW, TEXTURE
+from nau_py.raytrace.ptx.runtime.guarded import open_marks
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import FrameContext, Session
@@ -94,7 +94,7 @@ class OptixState:
         shapes = [(i.buffers["vertex_buffer"], i.buffers["index_buffer"]) for i in self.instances]
         records = [self._records(at)[0] for at in range(len(self.instances))]
         about = f"project '{self.session.project.name}', pass '{pass_.name}', its geometry programs"
-        launch.marks = marks(about, 0)
+        launch.marks = open_marks(about, 0)
         self.handle, self.kinds, self._kept = build_scene(
             native, launch, shapes, records, asked, boxes
         )
