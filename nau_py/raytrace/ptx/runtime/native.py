@@ -24,7 +24,7 @@ class NotNative(Exception):
 
 
 _DIGEST = 32
-RUNTIME = files("nau_py.raytrace.ptx") / "runtime.ll"
+RUNTIME = files("nau_py.raytrace.ptx.runtime") / "runtime.ll"
 
 
 @lru_cache(maxsize=1)
