@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
+from nau_py.passes.state import PassState, PassStates
 from nau_py.scene.camera import CameraState
 from nau_py.scene.lights import LightState
 from nau_py.scene.mapping import PassMaterials
@@ -76,7 +77,8 @@ class PassRecord:
     """What a raytrace pass simulates and leaves out, for the report."""
 
 
-T = TypeVar("T", bound="Tracer")
+P = TypeVar("P", bound=Pass)
+S = TypeVar("S", bound=PassState)
 Progress = Callable[[str, int, int], None]
 """``progress(pass name, done, total)`` while a pass works."""
 
@@ -85,15 +87,10 @@ def no_progress(name: str, done: int, total: int) -> None:
     """Say nothing."""
 
 
-class Tracer(Protocol):
-    """What is made of a raytrace pass in a session."""
-
-    def __init__(self, pass_: Any, session: Session) -> None: ...
-
-
 @dataclass(slots=True)
 class Session:
-    """What lasts from frame to frame: world, GPU resources, camera viewports, tracers."""
+    """State that lasts from frame to frame: world, GPU resources, camera viewports, and the state
+    of each pass."""
 
     project: Project
     pipeline: str
@@ -102,7 +99,7 @@ class Session:
     options: RunOptions
     camera_rects: dict[str, Rect] = field(default_factory=dict)
     materials: dict[str, PassMaterials] = field(default_factory=dict)
-    tracers: dict[str, Any] = field(default_factory=dict)
+    states: PassStates = field(default_factory=PassStates)
     progress: Progress = no_progress
     first_frame: int = 0
     """The frame that counts as 0: scripts may set FRAME_COUNT."""
@@ -111,15 +108,11 @@ class Session:
         """Go on with another pipeline, of which frame ``index`` is number 0."""
         self.pipeline, self.first_frame = pipeline, index
         self.materials.clear()  # both are kept by the names of passes, unique in a pipeline only
-        self.tracers.clear()
+        self.states.close()
 
-    def tracer(self, pass_: Pass, kind: type[T]) -> T:
-        """What a raytrace pass keeps from frame to frame, made once: ``kind(pass_, session)``."""
-        key = pass_.name or ""
-        found = self.tracers.get(key)
-        if not isinstance(found, kind):
-            found = self.tracers[key] = kind(pass_, self)
-        return found
+    def state(self, pass_: P, factory: Callable[[P, Session], S]) -> S:
+        """Return the state that a pass keeps from frame to frame; ``factory`` makes it once."""
+        return self.states.get(pass_.name or "", factory, lambda: factory(pass_, self))
 
     def pass_materials(self, pass_: Pass) -> PassMaterials:
         """The material mapping of a pass, made once."""

@@ -32,7 +32,7 @@ class MaterialShading:
         """The frame's context; set before rays are traced."""
 
     def forget(self) -> None:
-        """Make its programs anew at the next hit: their sources have changed."""
+        """Make the programs again at the next hit, since their sources have changed."""
         from nau_py.raster.hits import HitShading
 
         self._shading = HitShading()

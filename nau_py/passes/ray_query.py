@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from nau_py.model.passes import Pass
 from nau_py.passes.access import buffer
 
 if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord
+    from nau_py.passes.frame import FrameContext, PassRecord, Session
     from nau_py.raytrace.tracing.accelerator import Accelerator
 
 RAY_BYTES, HIT_BYTES = 32, 16
@@ -47,9 +48,48 @@ class RayQueryClass:
         if count <= 0:
             return
         given = np.frombuffer(rays.read(count * RAY_BYTES), np.float32).reshape(-1, 8)
-        hits.write(_trace(_accelerator(pass_, frame), given).tobytes())
+        accelerator = frame.session.state(pass_, RayQueryState).accelerator()
+        hits.write(_trace(accelerator, given).tobytes())
         frame.session.resources.barrier()
         record.rays = {"query": count}
+
+
+class RayQueryState:
+    """Acceleration structure of the first object of the scene, in object space as in Nau."""
+
+    def __init__(self, pass_: RayQueryPass, session: Session) -> None:
+        self._scene = pass_.scene.name or "" if pass_.scene else ""
+        self._session = session
+        self._version: tuple[int, int] | None = None
+        self._accelerator: Accelerator | None = None
+
+    def accelerator(self) -> Accelerator:
+        """Return the structure; build it again where the mesh has changed since the last call."""
+        from nau_py.raytrace.tracing.accelerator import Accelerator
+        from nau_py.raytrace.tracing.geometry import RayGeometry
+
+        objects = self._session.world.objects([self._scene])
+        mesh = objects[0].mesh if objects else None
+        version = (id(mesh), mesh.version if mesh else 0)
+        if self._accelerator is None or self._version != version:
+            groups = [g.indices.astype(np.int32) for g in mesh.groups] if mesh else []
+            triangles = np.concatenate(groups) if groups else np.zeros((0, 3), np.int32)
+            points = mesh.positions[:, :3] if mesh else np.zeros((0, 3), np.float32)
+            owner = np.zeros(len(triangles), np.int32)
+            points = np.ascontiguousarray(points, np.float32)
+            self._accelerator = Accelerator(RayGeometry(points, triangles, owner, [""]))
+            self._version = version
+        return self._accelerator
+
+    def reload_shaders(self, files: set[Path]) -> None:
+        """Do nothing: ray queries run no shader."""
+
+    def reload_programs(self) -> None:
+        """Do nothing: ray queries run no program."""
+
+    def close(self) -> None:
+        """Free the acceleration structure."""
+        self._accelerator = None
 
 
 def _storage(pass_: RayQueryPass, node: RayBuffer, frame: FrameContext) -> Any:
@@ -73,30 +113,6 @@ def _count(pass_: RayQueryPass, frame: FrameContext, hit_bytes: int) -> int:
     if node is not None and node.value is not None:
         return int(frame.project.number(node.value))
     return hit_bytes // HIT_BYTES
-
-
-def _accelerator(pass_: RayQueryPass, frame: FrameContext) -> Accelerator:
-    """Of the first object of the scene, in its own space, as Nau has it; kept from frame to
-    frame."""
-    from nau_py.raytrace.tracing.accelerator import Accelerator
-    from nau_py.raytrace.tracing.geometry import RayGeometry
-
-    name = pass_.scene.name if pass_.scene else None
-    objects = frame.world.objects([name or ""])
-    mesh = objects[0].mesh if objects else None
-    key = f"rays of {name}"
-    kept = frame.session.tracers.get(key)
-    version = (id(mesh), mesh.version if mesh else 0)
-    if kept is None or kept[0] != version:
-        groups = [g.indices.astype(np.int32) for g in mesh.groups] if mesh else []
-        triangles = np.concatenate(groups) if groups else np.zeros((0, 3), np.int32)
-        points = mesh.positions[:, :3] if mesh else np.zeros((0, 3), np.float32)
-        owner = np.zeros(len(triangles), np.int32)
-        geometry = RayGeometry(np.ascontiguousarray(points, np.float32), triangles, owner, [""])
-        kept = frame.session.tracers[key] = (version, Accelerator(geometry))
-    found = kept[1]
-    assert isinstance(found, Accelerator)
-    return found
 
 
 def _trace(accelerator: Accelerator, rays: NDArray[np.float32]) -> NDArray[np.void]:

@@ -93,7 +93,7 @@ class RaytraceClass:
             process(pass_.postProcess, frame)
             record.status, record.reason = "left_out", "its mask selects no pixel"
             return
-        state = frame.session.tracer(pass_, TracingState)
+        state = frame.session.state(pass_, TracingState)
         state.update(pass_)
         scene = state.scene(pass_, frame, target, inputs)
 

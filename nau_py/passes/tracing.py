@@ -44,6 +44,7 @@ class TracingState:
 
     def __init__(self, pass_: RaytracePass, session: Session) -> None:
         self.session = session
+        self._pass = pass_
         objects = session.world.objects(pass_.scene_names)
         self.geometry: RayGeometry = gather(objects, session.world.moved)
         session.resources.diagnostics += face_faults(pass_, objects, self.geometry.dropped)
@@ -58,11 +59,19 @@ class TracingState:
         solid = [o for o in objects if o.mesh.primitive == "TRIANGLES"]
         self.shading = MaterialShading(solid, self.mapped, self.service)
         self.label = f"project '{session.project.name}', pass '{pass_.name}'"
-        self.bind(pass_)
+        self.reload_programs()
 
-    def bind(self, pass_: RaytracePass) -> None:
-        """Load the programs of the pass, or load them anew. Raises
-        :class:`~nau_py.ProgramError`; those that were bound then stay."""
+    def reload_shaders(self, files: set[Path]) -> None:
+        """Make the GLSL programs that shade hits again at the next hit."""
+        self.shading.forget()
+
+    def close(self) -> None:
+        """Do nothing: geometry and programs are freed with the state."""
+
+    def reload_programs(self) -> None:
+        """Load the programs of the pass, the first time or again. Raises
+        :class:`~nau_py.ProgramError`; the programs loaded before then stay in use."""
+        pass_ = self._pass
         loader = _loader(self.session, {(CLOSEST_HIT, "material"): self.shading})
         entry, label = pass_.rtEntryPoint, self.label
         assert entry is not None

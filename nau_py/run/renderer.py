@@ -294,20 +294,19 @@ class Renderer:
         """Compile anew the GLSL programs that stand in ``files`` (resolved paths), for the next
         frame. Raises :class:`~nau_py.ShaderError`; all are then as they were."""
         self.session.resources.reload_programs(files)
-        for state in self.session.tracers.values():
-            state.shading.forget()
+        for state in self.session.states:
+            state.reload_shaders(files)
 
     def reload_ray_programs(self) -> None:
         """Load the ray programs anew, for the next frame. Raises
         :class:`~nau_py.ProgramError`; those of the pass then stay."""
-        tracers = self.session.tracers
-        for pass_ in self.pipeline.passes:
-            if (pass_.name or "") in tracers:
-                tracers[pass_.name or ""].bind(pass_)
+        for state in self.session.states:
+            state.reload_programs()
 
     def close(self) -> None:
         """Free the GPU objects. Rendering again starts from frame 0."""
         if self._session is not None:
+            self._session.states.close()
             self._session.resources.release()
         if self._scripts is not None:
             self._scripts.attributes.restore()

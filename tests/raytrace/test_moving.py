@@ -45,7 +45,7 @@ def test_a_moved_object_is_built_anew_alone(folder: Folder) -> None:
     for index in range(1, 4):
         renderer.move("box", placed(-0.8 + 0.3 * index, 0.4 * index))
         found = renderer.render(index).targets["L::out"]
-        standing.append(renderer.session.tracers["trace"].accelerator.scene)
+        standing.append(renderer.session.states["trace"].accelerator.scene)
         fresh = nau_py.Renderer(project)
         fresh.move("box", placed(-0.8 + 0.3 * index, 0.4 * index))
         np.testing.assert_array_equal(found, fresh.render(0).targets["L::out"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from nau_py.diagnostics.diagnostic import warning
@@ -33,25 +34,24 @@ _CODES = {
 """Exception codes of OptiX (``optix_types.h``, ``optix_declarations.h``) and of the runtime."""
 
 
-class _NoShading:
-    def forget(self) -> None:
-        """Compiled programs call no GLSL."""
-
-
 class PtxState:
-    """What such a pass keeps from frame to frame."""
+    """State of a pass of compiled programs: its environment of OptiX 7 or OptiX 3 to 6."""
 
     def __init__(self, pass_: RaytracePass, session: Session) -> None:
         self.session = session
-        self.shading = _NoShading()
+        self._pass = pass_
         programs = Programs(pass_, session)
         self.environment: RtState | OptixState = (OptixState if programs.old else RtState)(
             pass_, session, programs
         )
 
-    def bind(self, pass_: RaytracePass) -> None:
-        """Compile the programs anew. Raises :class:`~nau_py.ProgramError`; what was bound
-        then stays."""
+    def reload_shaders(self, files: set[Path]) -> None:
+        """Do nothing: compiled programs call no GLSL."""
+
+    def reload_programs(self) -> None:
+        """Compile the programs again. Raises :class:`~nau_py.ProgramError`; the programs compiled
+        before then stay in use."""
+        pass_ = self._pass
         programs = Programs(pass_, self.session)
         if programs.old == isinstance(self.environment, OptixState):
             self.environment.bind(pass_, programs)
@@ -59,6 +59,9 @@ class PtxState:
             self.environment = (OptixState if programs.old else RtState)(
                 pass_, self.session, programs
             )
+
+    def close(self) -> None:
+        """Do nothing: memory is freed with the state."""
 
 
 def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) -> None:
@@ -81,7 +84,7 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
         mask = read_mask(pass_, read_inputs(pass_, frame))
         pixels = select(mask, target.width, target.height)
         stages.end("read_back")
-    environment = session.tracer(pass_, PtxState).environment
+    environment = session.state(pass_, PtxState).environment
     launch = environment.begin(pass_, frame, target)
     launch.indices = pixels
     generate = pass_.rtEntryPoint and pass_.rtEntryPoint.rayGen
