@@ -32,7 +32,7 @@ from embreex.rtcore_scene import EmbreeScene
 from nau_py.diagnostics.location import NOWHERE
 from nau_py.raytrace.kernels.core import codes
 from nau_py.raytrace.programs.batch import PINHOLE
-from nau_py.raytrace.programs.catalogue import CLOSEST_HIT, MISS
+from nau_py.raytrace.programs.description import CLOSEST_HIT, MISS
 from nau_py.raytrace.tracing.accelerator import Accelerator, embree_version
 from nau_py.raytrace.tracing.batches import RayLight, RayMaterial
 from nau_py.raytrace.tracing.camera_rays import camera_rays, camera_record

@@ -18,7 +18,7 @@ from nau_py.model.effects import ALL, AUTO, wanted
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import BUILTIN, Program, RayMaterial, RaytracePass
 from nau_py.passes.frame import FrameContext, PassRecord
-from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.programs.source import stand_in
 from nau_py.raytrace.tracing.simulated import NEGLIGIBLE, Simulated
 from nau_py.scene.camera import CameraState

@@ -22,7 +22,13 @@ from nau_py.passes.material_shading import MaterialShading
 from nau_py.plugins import program_files
 from nau_py.process.paths import resolve as resolve_path
 from nau_py.raster.semantics import resolve
-from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, EXCEPTION, MISS, RAY_GENERATION
+from nau_py.raytrace.programs.description import (
+    ANY_HIT,
+    CLOSEST_HIT,
+    EXCEPTION,
+    MISS,
+    RAY_GENERATION,
+)
 from nau_py.raytrace.tracing.accelerator import Accelerator
 from nau_py.raytrace.tracing.batches import RayLight, RayMaterial
 from nau_py.raytrace.tracing.dispatch import Estimate, LaunchResult, Work

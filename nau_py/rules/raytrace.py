@@ -14,7 +14,8 @@ from nau_py.model.pass_classes import RAYTRACE_CLASSES
 from nau_py.model.raytrace import BUILTIN, Program, RaytracePass
 from nau_py.plugins import PREFIX, program_files
 from nau_py.process.paths import resolve, similar
-from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS, EXCEPTION, RAY_GENERATION
+from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
+from nau_py.raytrace.programs.description import EXCEPTION, RAY_GENERATION
 from nau_py.raytrace.programs.source import COMPILED, launches_ptx, stand_in, strip_decoration
 from nau_py.raytrace.ptx.exports import exports, kind_of
 from nau_py.rules.rule import ERROR, WARNING, Facts, check, rule

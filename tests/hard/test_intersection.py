@@ -56,13 +56,13 @@ def translated(x: float) -> np.ndarray:  # type: ignore[type-arg]
 @pytest.mark.parametrize("cosine", [1e-3, 1e-5, 1e-7])
 def test_grazing(cosine: float) -> None:
     """Fresnel tends to 1 within [0, 1]; a ray that leaves at such an angle meets nothing."""
-    from nau_py.raytrace.kernels.shading.bsdf import fresnel
+    from nau_py.raytrace.kernels.shading.bsdf import evaluate_fresnel
 
     for eta in (1.5, 1 / 1.5, 1.0001):
-        share, behind = fresnel.py_func(cosine, eta)  # type: ignore[attr-defined]
+        share, behind = evaluate_fresnel.py_func(cosine, eta)  # type: ignore[attr-defined]
         assert 0.0 <= share <= 1.0
         assert 0.0 <= behind <= 1.0
-    assert fresnel.py_func(cosine, 1.5)[0] > 1 - 10 * cosine  # type: ignore[attr-defined]
+    assert evaluate_fresnel.py_func(cosine, 1.5)[0] > 1 - 10 * cosine  # type: ignore[attr-defined]
     plane = geometry(np.array([[-1, 0.1, -1], [1, -0.1, -1], [1, 0.2, 1]]), [[0, 1, 2]])
     rng = np.random.default_rng(3)
     u, v = rng.uniform(0, 0.5, (2, 50_000)).astype(np.float32)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.kernels.shading.bsdf import fresnel
+from nau_py.raytrace.kernels.shading.bsdf import evaluate_fresnel
 from tests.conftest import Folder, pixel_rays
 from tests.raytrace.studio import box, colour, picture, program, sphere, square, studio
 
@@ -113,11 +113,11 @@ def test_tir_critical() -> None:
         critical - 1e-12,
         critical + 1e-12,
     ):
-        share, behind = fresnel.py_func(float(cosine), eta)  # type: ignore[attr-defined]
+        share, behind = evaluate_fresnel.py_func(float(cosine), eta)  # type: ignore[attr-defined]
         assert 0 <= share <= 1
         assert behind >= 0
         assert share > 1 - 1e-4
-    assert fresnel.py_func(float(critical) - 1e-9, eta) == (1.0, 0.0)  # type: ignore[attr-defined]
+    assert evaluate_fresnel.py_func(float(critical) - 1e-9, eta) == (1.0, 0.0)  # type: ignore[attr-defined]
 
 
 @pytest.mark.parametrize("depth", [2, 8, 64])

@@ -14,7 +14,7 @@ from nau_py.model.raytrace import GEOMETRY_KINDS, Program, RaytracePass
 from nau_py.passes.ptx.programs import Modules, find_function, used_programs
 from nau_py.passes.ptx.variables import mentioned, value_bytes
 from nau_py.process.paths import resolve as resolve_path
-from nau_py.raytrace.programs.catalogue import MISS
+from nau_py.raytrace.programs.description import MISS
 from nau_py.raytrace.ptx.compiler.reader import Module, PtxError
 from nau_py.raytrace.ptx.compiler.uses import Uses, uses_of
 from nau_py.raytrace.ptx.optix.optix6 import declared, is_old

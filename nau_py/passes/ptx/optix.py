@@ -14,7 +14,7 @@ from nau_py.model.raytrace import GEOMETRY_KINDS, GeometryProgram, RaytracePass
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
 from nau_py.passes.ptx.variables import UNITS
-from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.ptx.optix.optix6 import BUFFER, BUFFER_BYTES, PLAIN, STACK_OVERFLOW, TEXTURE
 from nau_py.raytrace.ptx.runtime.guarded import open_marks
 

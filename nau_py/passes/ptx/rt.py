@@ -13,7 +13,7 @@ from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.raytrace import Program, RayMaterial, RaytracePass
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
-from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.ptx.compiler.compile import PARAMETERS
 
 if TYPE_CHECKING:

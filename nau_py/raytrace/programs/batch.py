@@ -8,7 +8,13 @@ from typing import Any
 import numpy as np
 
 from nau_py.raytrace.kernels.core.codes import ANY_HIT_CODES, CLOSEST_CODES, MISS_CODES
-from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, EXCEPTION, MISS, RAY_GENERATION
+from nau_py.raytrace.programs.description import (
+    ANY_HIT,
+    CLOSEST_HIT,
+    EXCEPTION,
+    MISS,
+    RAY_GENERATION,
+)
 from nau_py.raytrace.tracing.arrays import F32
 from nau_py.raytrace.tracing.batches import Launch
 

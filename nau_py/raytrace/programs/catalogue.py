@@ -5,13 +5,13 @@ Only the names: lint knows them without loading the engine. A test holds the lis
 
 from __future__ import annotations
 
-from typing import Final
-
-RAY_GENERATION: Final = "ray generation"
-CLOSEST_HIT: Final = "CLOSEST_HIT"
-ANY_HIT: Final = "ANY_HIT"
-MISS: Final = "MISS"
-EXCEPTION: Final = "exception"
+from nau_py.raytrace.programs.description import (
+    ANY_HIT,
+    CLOSEST_HIT,
+    EXCEPTION,
+    MISS,
+    RAY_GENERATION,
+)
 
 BUILTIN_PROGRAMS: dict[str, tuple[str, str]] = {
     "pinhole": (

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.core import tables as t
 from nau_py.raytrace.kernels.core.codes import GLOSSY, NONE, ONE_SIDED, TRANSPARENCY
-from nau_py.raytrace.kernels.shading.bsdf import albedo_table
-from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.raytrace.kernels.shading.bsdf import make_albedo_table
+from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.tracing.accelerator import Accelerator
 from nau_py.raytrace.tracing.arrays import F32
 from nau_py.raytrace.tracing.batches import RayLight, RayMaterial
@@ -112,7 +112,7 @@ class TexelStore:
 
 @lru_cache(maxsize=1)
 def _albedo() -> F64:
-    return albedo_table(ALBEDO_SAMPLES)
+    return make_albedo_table(ALBEDO_SAMPLES)
 
 
 def _material(material: RayMaterial, store: TexelStore) -> NDArray[Any]:

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.core import tables as t
-from nau_py.raytrace.kernels.core.jit import COUNTS_CYCLES, cycles_now
+from nau_py.raytrace.kernels.core.jit import COUNTS_CYCLES, count_cycles
 from nau_py.raytrace.kernels.intersect.any_hit import filter_address
 from nau_py.raytrace.kernels.intersect.embree import CONTEXT, RAY_FLOATS
 from nau_py.raytrace.kernels.path import batch_memory as batch
 from nau_py.raytrace.kernels.path.integrator import advance, march, send
-from nau_py.raytrace.programs.catalogue import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.tracing.arrays import F32
 from nau_py.raytrace.tracing.batches import Hits, Rays
 from nau_py.raytrace.tracing.program_loader import BoundProgram
@@ -118,7 +118,7 @@ class Tracer:
         """Room for a tile's results, zero, (count, 4); it and the counts begin anew."""
         self._counters[:] = 0
         self._viewed[:] = 0
-        self._begun = cycles_now()
+        self._begun = count_cycles()
         self._named.clear()
         self._rest = RayCounts()
         if len(self._results) < count:
@@ -141,7 +141,7 @@ class Tracer:
         found.nonfinite = self._rest.nonfinite + int(self._counters[t.NONFINITE])
         found.cut_layers = int(self._counters[t.CUT])
         found.traced = int(self._counters[t.IN_EMBREE])
-        found.cycles = cycles_now() - self._begun if COUNTS_CYCLES else 0
+        found.cycles = count_cycles() - self._begun if COUNTS_CYCLES else 0
         return found
 
     def load(self) -> None:

@@ -91,7 +91,7 @@ COUNTS_CYCLES = platform.machine().lower() in ("x86_64", "amd64")
 
 
 @intrinsic  # type: ignore[untyped-decorator]
-def cycles(typing: Any) -> Any:
+def read_cycles(typing: Any) -> Any:
     """The processor's cycle counter, int64; 0 where it cannot be read."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
@@ -107,6 +107,6 @@ def cycles(typing: Any) -> Any:
 
 
 @kernel
-def cycles_now() -> int:
+def count_cycles() -> int:
     """:func:`cycles` for Python."""
-    return cycles()
+    return read_cycles()

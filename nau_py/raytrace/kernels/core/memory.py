@@ -32,7 +32,7 @@ def _pointer(builder: Any, address: Any, index: Any, size: int, type_: Any) -> A
     return builder.inttoptr(place, type_.as_pointer())
 
 
-def _widened(builder: Any, value: Any, code: str) -> Any:
+def _widen(builder: Any, value: Any, code: str) -> Any:
     if code == "f":
         return builder.fpext(value, ir.DoubleType())
     return builder.sext(value, _WORD) if code in "ib" else value
@@ -42,7 +42,7 @@ def _size(code: str) -> int:
     return {"f": 4, "d": 8, "i": 4, "b": 1, "q": 8}[code]
 
 
-def loader(code: str) -> Callable[[Any, Any], Any]:
+def make_loader(code: str) -> Callable[[Any, Any], Any]:
     """``f(address, index)``: entry ``index`` of an array of float32 ``f``, float64 ``d``, int32
     ``i``, int8 ``b`` or int64 ``q``, as float64 or int64."""
     result = types.float64 if code in "fd" else types.int64
@@ -51,15 +51,15 @@ def loader(code: str) -> Callable[[Any, Any], Any]:
     def load(context: Any, address: Any, index: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
             pointer = _pointer(builder, args[0], args[1], _size(code), _LOADED[code])
-            return _widened(builder, builder.load(pointer), code)
+            return _widen(builder, builder.load(pointer), code)
 
         return result(types.uint64, types.int64), generate
 
     return cast(Callable[[Any, Any], Any], load)
 
 
-def storer(code: str) -> Callable[[Any, Any, Any], None]:
-    """``f(address, index, value)``: the reverse of ``loader``, for ``f``, ``i`` and ``q``."""
+def make_storer(code: str) -> Callable[[Any, Any, Any], None]:
+    """``f(address, index, value)``: the reverse of ``make_loader``, for ``f``, ``i`` and ``q``."""
     argument = types.float64 if code == "f" else types.int64
 
     @intrinsic  # type: ignore[untyped-decorator, unused-ignore]
@@ -79,7 +79,7 @@ def storer(code: str) -> Callable[[Any, Any, Any], None]:
     return cast(Callable[[Any, Any, Any], None], store)
 
 
-def record_at(dtype: np.dtype[Any]) -> Callable[[Any, Any], Any]:
+def record_reader(dtype: np.dtype[Any]) -> Callable[[Any, Any], Any]:
     """``f(address, index)``: a record of an array, by reference."""
     record = numba.from_dtype(dtype)
 
@@ -95,7 +95,7 @@ def record_at(dtype: np.dtype[Any]) -> Callable[[Any, Any], Any]:
     return cast(Callable[[Any, Any], Any], at)
 
 
-def copy(dtype: np.dtype[Any]) -> Callable[[Any, Any], None]:
+def record_copier(dtype: np.dtype[Any]) -> Callable[[Any, Any], None]:
     """``f(to, from)``: one record over another."""
     record = numba.from_dtype(dtype)
 
@@ -121,7 +121,7 @@ def _field(dtype: np.dtype[Any], name: str) -> tuple[str, int, int]:
     return code, int(np.prod(shape)), int(offset)
 
 
-def getter(dtype: np.dtype[Any], name: str) -> Callable[[Any], Any]:
+def field_reader(dtype: np.dtype[Any], name: str) -> Callable[[Any], Any]:
     """``f(record)``: an array field as a tuple of float64 or int64."""
     record = numba.from_dtype(dtype)
     code, count, offset = _field(dtype, name)
@@ -135,7 +135,7 @@ def getter(dtype: np.dtype[Any], name: str) -> Callable[[Any], Any]:
             base = builder.ptrtoint(args[0], _WORD)
             start = builder.add(base, ir.Constant(_WORD, offset))
             values = [
-                _widened(
+                _widen(
                     builder,
                     builder.load(
                         _pointer(builder, start, ir.Constant(_WORD, k), _size(code), _LOADED[code])
@@ -151,7 +151,7 @@ def getter(dtype: np.dtype[Any], name: str) -> Callable[[Any], Any]:
     return cast(Callable[[Any], Any], get)
 
 
-def setter(dtype: np.dtype[Any], name: str) -> Callable[[Any, Any], None]:
+def field_writer(dtype: np.dtype[Any], name: str) -> Callable[[Any, Any], None]:
     """``f(record, values)``: store a tuple into an array field of float32 or int32."""
     record = numba.from_dtype(dtype)
     code, count, offset = _field(dtype, name)
@@ -176,5 +176,5 @@ def setter(dtype: np.dtype[Any], name: str) -> Callable[[Any, Any], None]:
     return cast(Callable[[Any, Any], None], put)
 
 
-f32, f64, i32, i8, i64 = (loader(code) for code in "fdibq")
-put_f32, put_i32, put_i64 = (storer(code) for code in "fiq")
+f32, f64, i32, i8, i64 = (make_loader(code) for code in "fdibq")
+put_f32, put_i32, put_i64 = (make_storer(code) for code in "fiq")

@@ -38,13 +38,13 @@ def pcg4d(x: np.uint32, y: np.uint32, z: np.uint32, w: np.uint32) -> np.uint32:
 
 
 @inner
-def uniform(seed: np.uint32, pixel: np.uint32, sample: np.uint32, dimension: np.uint32) -> float:
+def sample_1d(seed: np.uint32, pixel: np.uint32, sample: np.uint32, dimension: np.uint32) -> float:
     """A number in [0, 1)."""
     return float(pcg4d(pixel, sample, dimension, seed) >> _8) * _TO_UNIT
 
 
 @inner
-def reversed_bits(x: np.uint32) -> np.uint32:
+def reverse_bits(x: np.uint32) -> np.uint32:
     x = np.uint32((x << np.uint32(16)) | (x >> np.uint32(16)))
     m = np.uint32(0x00FF00FF)
     x = np.uint32(((x & m) << np.uint32(8)) | ((x >> np.uint32(8)) & m))
@@ -57,7 +57,7 @@ def reversed_bits(x: np.uint32) -> np.uint32:
 
 
 @inner
-def laine_karras(x: np.uint32, seed: np.uint32) -> np.uint32:
+def scramble_bits(x: np.uint32, seed: np.uint32) -> np.uint32:
     """The permutation of Burley's listing 3, on reversed bits."""
     x = np.uint32(x + seed)
     x = np.uint32(x ^ (x * np.uint32(0x6C50B47C)))
@@ -67,12 +67,12 @@ def laine_karras(x: np.uint32, seed: np.uint32) -> np.uint32:
 
 
 @inner
-def sobol2(
+def sample_2d(
     seed: np.uint32, pixel: np.uint32, sample: np.uint32, dimension: np.uint32
 ) -> tuple[float, float]:
     """Two numbers in [0, 1): point ``sample`` of a (0, 2)-sequence of its own per dimension."""
     key = pcg4d(pixel, dimension, np.uint32(0x9E3779B9), seed)
-    index = reversed_bits(laine_karras(reversed_bits(sample), key))
+    index = reverse_bits(scramble_bits(reverse_bits(sample), key))
     second = np.uint32(0)
     column = np.uint32(0x80000000)
     rest = index
@@ -83,13 +83,13 @@ def sobol2(
         column = np.uint32(column ^ (column >> np.uint32(1)))
     a = np.uint32(key * np.uint32(0x9E3779B1) + np.uint32(0x7F4A7C15))
     b = np.uint32(a * np.uint32(0x9E3779B1) + np.uint32(0x7F4A7C15))
-    x = reversed_bits(laine_karras(index, a))
-    y = reversed_bits(laine_karras(reversed_bits(second), b))
+    x = reverse_bits(scramble_bits(index, a))
+    y = reverse_bits(scramble_bits(reverse_bits(second), b))
     return float(x >> _8) * _TO_UNIT, float(y >> _8) * _TO_UNIT
 
 
 @inner
-def on_disk(x: float, y: float) -> tuple[float, float]:
+def sample_disk(x: float, y: float) -> tuple[float, float]:
     """A uniform point of the unit disk; Shirley and Chiu's concentric map, JGT 2(3), 1997."""
     a, b = 2.0 * x - 1.0, 2.0 * y - 1.0
     if a == 0.0 and b == 0.0:
@@ -102,14 +102,14 @@ def on_disk(x: float, y: float) -> tuple[float, float]:
 
 
 @inner
-def cosine_hemisphere(x: float, y: float) -> V3:
+def sample_hemisphere(x: float, y: float) -> V3:
     """A direction about +z with density cos/pi (Malley's method)."""
-    a, b = on_disk(x, y)
+    a, b = sample_disk(x, y)
     return a, b, sqrt(max(0.0, 1.0 - a * a - b * b))
 
 
 @inner
-def on_sphere(x: float, y: float) -> V3:
+def sample_sphere(x: float, y: float) -> V3:
     """A uniform direction."""
     z = 1.0 - 2.0 * x
     r = sqrt(max(0.0, 1.0 - z * z))

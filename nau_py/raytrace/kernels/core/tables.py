@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from nau_py.raytrace.kernels.core.memory import copy, getter, record_at, setter
+from nau_py.raytrace.kernels.core.memory import (
+    field_reader,
+    field_writer,
+    record_copier,
+    record_reader,
+)
 
 MEDIA = 4
 """Dielectrics that a path can be inside of at once."""
@@ -25,12 +30,12 @@ MATERIAL = np.dtype(
     align=True,
 )
 """``reradiation``: row-major, [emitted band, absorbed band]. ``texture``: of unit 0, or -1."""
-material_at = record_at(MATERIAL)
-diffuse_of = getter(MATERIAL, "diffuse")
-specular_of = getter(MATERIAL, "specular")
-emission_of = getter(MATERIAL, "emission")
-absorption_of = getter(MATERIAL, "absorption")
-reradiation_of = getter(MATERIAL, "reradiation")
+material_at = record_reader(MATERIAL)
+diffuse_of = field_reader(MATERIAL, "diffuse")
+specular_of = field_reader(MATERIAL, "specular")
+emission_of = field_reader(MATERIAL, "emission")
+absorption_of = field_reader(MATERIAL, "absorption")
+reradiation_of = field_reader(MATERIAL, "reradiation")
 
 TEXTURE = np.dtype(
     [
@@ -44,8 +49,8 @@ TEXTURE = np.dtype(
     ],
     align=True,
 )
-texture_at = record_at(TEXTURE)
-border_of = getter(TEXTURE, "border")
+texture_at = record_reader(TEXTURE)
+border_of = field_reader(TEXTURE, "border")
 
 LIGHT = np.dtype(
     [
@@ -65,14 +70,14 @@ LIGHT = np.dtype(
 )
 """World space less the scene's centre. ``spot`` is the unit axis, ``cutoff`` its cosine (-1: no
 spot). ``edge_u`` and ``edge_v`` span a rectangle about ``position``, or are a disc's half axes."""
-light_at = record_at(LIGHT)
-position_of = getter(LIGHT, "position")
-direction_of = getter(LIGHT, "direction")
-colour_of = getter(LIGHT, "colour")
-attenuation_of = getter(LIGHT, "attenuation")
-spot_of = getter(LIGHT, "spot")
-edge_u_of = getter(LIGHT, "edge_u")
-edge_v_of = getter(LIGHT, "edge_v")
+light_at = record_reader(LIGHT)
+position_of = field_reader(LIGHT, "position")
+direction_of = field_reader(LIGHT, "direction")
+colour_of = field_reader(LIGHT, "colour")
+attenuation_of = field_reader(LIGHT, "attenuation")
+spot_of = field_reader(LIGHT, "spot")
+edge_u_of = field_reader(LIGHT, "edge_u")
+edge_v_of = field_reader(LIGHT, "edge_v")
 
 SHAPES = ("DIRECTIONAL", "POINT", "SPOT", "RECTANGLE", "DISC", "SPHERE")
 DIRECTIONAL, POINT, SPOT, RECTANGLE, DISC, SPHERE = range(6)
@@ -137,7 +142,7 @@ for shadows, -1 for none. ``asks_python``: whether any program is Python's. ``sk
 kind of ray that is not sent. ``caustics``: whether lamps count that are met by way of a mirror or
 glass after a diffuse surface. ``negligible``: weight below which specular chains end.
 Positions are world space less the centre."""
-background_of = getter(SCENE, "background")
+background_of = field_reader(SCENE, "background")
 
 PATH = np.dtype(
     [
@@ -174,11 +179,11 @@ origin, past ignored hits. ``media``: indices of the materials that the origin i
 none. ``band``: the colour band that is followed after a fluorescent surface, -1 for all.
 ``scattered``: whether it has left a diffuse surface.
 """
-path_at, copy_path = record_at(PATH), copy(PATH)
-origin_of, set_origin = getter(PATH, "origin"), setter(PATH, "origin")
-heading_of, set_heading = getter(PATH, "direction"), setter(PATH, "direction")
-weight_of, set_weight = getter(PATH, "weight"), setter(PATH, "weight")
-media_of, set_media = getter(PATH, "media"), setter(PATH, "media")
+path_at, copy_path = record_reader(PATH), record_copier(PATH)
+origin_of, set_origin = field_reader(PATH, "origin"), field_writer(PATH, "origin")
+heading_of, set_heading = field_reader(PATH, "direction"), field_writer(PATH, "direction")
+weight_of, set_weight = field_reader(PATH, "weight"), field_writer(PATH, "weight")
+media_of, set_media = field_reader(PATH, "media"), field_writer(PATH, "media")
 
 TILE = np.dtype(
     [
@@ -231,10 +236,16 @@ SHADOW_RAY = np.dtype(
 )
 """A ray to a light: ``light`` is added to result ``index`` as far as the ray gets through;
 ``source``: the light's number, that of the emissive triangles comes after the last light's."""
-shadow_at = record_at(SHADOW_RAY)
-ray_origin_of, set_ray_origin = getter(SHADOW_RAY, "origin"), setter(SHADOW_RAY, "origin")
-ray_heading_of, set_ray_heading = getter(SHADOW_RAY, "direction"), setter(SHADOW_RAY, "direction")
-light_of, set_light = getter(SHADOW_RAY, "light"), setter(SHADOW_RAY, "light")
+shadow_at = record_reader(SHADOW_RAY)
+ray_origin_of, set_ray_origin = (
+    field_reader(SHADOW_RAY, "origin"),
+    field_writer(SHADOW_RAY, "origin"),
+)
+ray_heading_of, set_ray_heading = (
+    field_reader(SHADOW_RAY, "direction"),
+    field_writer(SHADOW_RAY, "direction"),
+)
+light_of, set_light = field_reader(SHADOW_RAY, "light"), field_writer(SHADOW_RAY, "light")
 SHADOWS = 512
 """Shadow rays that are collected before they are traced."""
 

@@ -22,27 +22,27 @@ def cross(a: V3, b: V3) -> V3:
 
 
 @inner
-def scaled(a: V3, s: float) -> V3:
+def scale(a: V3, s: float) -> V3:
     return (a[0] * s, a[1] * s, a[2] * s)
 
 
 @inner
-def plus(a: V3, b: V3) -> V3:
+def add(a: V3, b: V3) -> V3:
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 @inner
-def minus(a: V3, b: V3) -> V3:
+def subtract(a: V3, b: V3) -> V3:
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
 @inner
-def times(a: V3, b: V3) -> V3:
+def multiply(a: V3, b: V3) -> V3:
     return (a[0] * b[0], a[1] * b[1], a[2] * b[2])
 
 
 @inner
-def unit(a: V3) -> V3:
+def normalize(a: V3) -> V3:
     """The unit vector along ``a``; zero stays zero."""
     length = sqrt(dot(a, a))
     if length > 0.0:
@@ -52,14 +52,14 @@ def unit(a: V3) -> V3:
 
 
 @inner
-def reflected(d: V3, n: V3) -> V3:
+def reflect(d: V3, n: V3) -> V3:
     """The mirror direction d - 2 (d·n) n about the unit normal ``n``."""
     k = 2.0 * dot(d, n)
     return (d[0] - k * n[0], d[1] - k * n[1], d[2] - k * n[2])
 
 
 @inner
-def basis(n: V3) -> tuple[V3, V3]:
+def make_frame(n: V3) -> tuple[V3, V3]:
     """Two unit vectors that make a right-handed frame with the unit vector ``n``.
 
     Duff et al., *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
@@ -73,7 +73,7 @@ def basis(n: V3) -> tuple[V3, V3]:
 
 
 @inner
-def in_frame(s: V3, t: V3, n: V3, x: float, y: float, z: float) -> V3:
+def from_frame(s: V3, t: V3, n: V3, x: float, y: float, z: float) -> V3:
     """x s + y t + z n."""
     return (
         x * s[0] + y * t[0] + z * n[0],

@@ -11,8 +11,8 @@ from typing import Any
 from nau_py.raytrace.kernels.core.jit import V3, inner
 from nau_py.raytrace.kernels.core.memory import f32, i8, i32
 from nau_py.raytrace.kernels.core.tables import texture_at
-from nau_py.raytrace.kernels.core.vec import cross, dot, unit
-from nau_py.raytrace.kernels.geometry.texture import RGBA, alpha, lookup
+from nau_py.raytrace.kernels.core.vec import cross, dot, normalize
+from nau_py.raytrace.kernels.geometry.texture import RGBA, filter_alpha, filter_texture
 
 C0 = 2.0**-24
 """Factor of the base vertex in the object-space error."""
@@ -23,15 +23,19 @@ OUTWARD = 1.5 * 2.0**-24
 
 
 @inner
-def corner(scene: Any, triangle: int, k: int) -> V3:
+def load_corner(scene: Any, triangle: int, k: int) -> V3:
     at = 3 * i32(scene.triangles, 3 * triangle + k)
     return f32(scene.vertices, at), f32(scene.vertices, at + 1), f32(scene.vertices, at + 2)
 
 
 @inner
-def surface_point(scene: Any, triangle: int, u: float, v: float) -> tuple[V3, V3, float]:
+def locate_point(scene: Any, triangle: int, u: float, v: float) -> tuple[V3, V3, float]:
     """Position, unit face normal as wound, and error bound along it (a distance)."""
-    a, b, c = corner(scene, triangle, 0), corner(scene, triangle, 1), corner(scene, triangle, 2)
+    a, b, c = (
+        load_corner(scene, triangle, 0),
+        load_corner(scene, triangle, 1),
+        load_corner(scene, triangle, 2),
+    )
     e1 = (b[0] - a[0], b[1] - a[1], b[2] - a[2])
     e2 = (c[0] - a[0], c[1] - a[1], c[2] - a[2])
     p = (
@@ -39,7 +43,7 @@ def surface_point(scene: Any, triangle: int, u: float, v: float) -> tuple[V3, V3
         a[1] + (u * e1[1] + v * e2[1]),
         a[2] + (u * e1[2] + v * e2[2]),
     )
-    n = unit(cross(e1, e2))
+    n = normalize(cross(e1, e2))
     extent = 0.0
     bound = 0.0
     for k in range(3):
@@ -51,7 +55,7 @@ def surface_point(scene: Any, triangle: int, u: float, v: float) -> tuple[V3, V3
 
 
 @inner
-def _outward(value: float, offset: float) -> float:
+def _move_outward(value: float, offset: float) -> float:
     if offset > 0.0:
         return value + offset + OUTWARD * abs(value)
     if offset < 0.0:
@@ -60,18 +64,18 @@ def _outward(value: float, offset: float) -> float:
 
 
 @inner
-def spawn(position: V3, normal: V3, bound: float, direction: V3) -> V3:
+def offset_origin(position: V3, normal: V3, bound: float, direction: V3) -> V3:
     """The origin of a ray that leaves along ``direction``: on its side of the face."""
     step = bound if dot(normal, direction) >= 0.0 else -bound
     return (
-        _outward(position[0], normal[0] * step),
-        _outward(position[1], normal[1] * step),
-        _outward(position[2], normal[2] * step),
+        _move_outward(position[0], normal[0] * step),
+        _move_outward(position[1], normal[1] * step),
+        _move_outward(position[2], normal[2] * step),
     )
 
 
 @inner
-def attribute(values: int, scene: Any, triangle: int, u: float, v: float) -> V3:
+def interpolate_attribute(values: int, scene: Any, triangle: int, u: float, v: float) -> V3:
     """The first three components of the vertex attribute at address ``values``."""
     a = 4 * i32(scene.triangles, 3 * triangle)
     b = 4 * i32(scene.triangles, 3 * triangle + 1)
@@ -85,22 +89,22 @@ def attribute(values: int, scene: Any, triangle: int, u: float, v: float) -> V3:
 
 
 @inner
-def shading_normal(scene: Any, triangle: int, u: float, v: float, face: V3) -> V3:
+def interpolate_normal(scene: Any, triangle: int, u: float, v: float, face: V3) -> V3:
     """The interpolated unit normal; the face normal where the vertices give none."""
     if scene.normals_count == 0:
         return face
     if i8(scene.smooth, triangle) == 0:
         at = 4 * i32(scene.triangles, 3 * triangle)
         n = (f32(scene.normals, at), f32(scene.normals, at + 1), f32(scene.normals, at + 2))
-        return unit(n) if dot(n, n) >= 1e-12 else face
-    n = attribute(scene.normals, scene, triangle, u, v)
+        return normalize(n) if dot(n, n) >= 1e-12 else face
+    n = interpolate_attribute(scene.normals, scene, triangle, u, v)
     if dot(n, n) < 1e-12:
         return face
-    return unit(n)
+    return normalize(n)
 
 
 @inner
-def facing(n: V3, direction: V3) -> V3:
+def face_forward(n: V3, direction: V3) -> V3:
     """``n`` turned towards where a ray along ``direction`` comes from."""
     if dot(n, direction) > 0.0:
         return (-n[0], -n[1], -n[2])
@@ -108,7 +112,7 @@ def facing(n: V3, direction: V3) -> V3:
 
 
 @inner
-def texture_point(scene: Any, triangle: int, u: float, v: float) -> tuple[float, float]:
+def interpolate_uv(scene: Any, triangle: int, u: float, v: float) -> tuple[float, float]:
     """texCoord0 at a hit; zero where the mesh has none."""
     if scene.uvs_count == 0:
         return 0.0, 0.0
@@ -123,27 +127,25 @@ def texture_point(scene: Any, triangle: int, u: float, v: float) -> tuple[float,
 
 
 @inner
-def texel(scene: Any, material: Any, triangle: int, u: float, v: float) -> RGBA:
+def evaluate_texture(scene: Any, material: Any, triangle: int, u: float, v: float) -> RGBA:
     """The texture of unit 0 at a hit; white where the material has none."""
     if material.texture < 0:
         return 1.0, 1.0, 1.0, 1.0
-    s, t = texture_point(scene, triangle, u, v)
-    return lookup(texture_at(scene.textures, material.texture), scene.texels, s, t)
+    s, t = interpolate_uv(scene, triangle, u, v)
+    return filter_texture(texture_at(scene.textures, material.texture), scene.texels, s, t)
 
 
 @inner
-def texel_alpha(scene: Any, material: Any, triangle: int, u: float, v: float) -> float:
-    """The last component of ``texel``."""
+def evaluate_alpha(scene: Any, material: Any, triangle: int, u: float, v: float) -> float:
+    """The last component of ``evaluate_texture``."""
     if material.texture < 0:
         return 1.0
-    s, t = texture_point(scene, triangle, u, v)
-    return alpha(texture_at(scene.textures, material.texture), scene.texels, s, t)
+    s, t = interpolate_uv(scene, triangle, u, v)
+    return filter_alpha(texture_at(scene.textures, material.texture), scene.texels, s, t)
 
 
 @inner
-def terminator_point(
-    scene: Any, triangle: int, u: float, v: float, position: V3, side: float
-) -> V3:
+def lift_point(scene: Any, triangle: int, u: float, v: float, position: V3, side: float) -> V3:
     """Where shadow rays of a smooth surface begin: on the curved patch that the normals suggest.
 
     Hanika, *Hacking the Shadow Terminator*, Ray Tracing Gems II, 2021. ``side``: 1 where the
@@ -154,10 +156,10 @@ def terminator_point(
     out = (0.0, 0.0, 0.0)
     for k in range(3):
         weight = 1.0 - u - v if k == 0 else (u if k == 1 else v)
-        p = corner(scene, triangle, k)
+        p = load_corner(scene, triangle, k)
         at = 4 * i32(scene.triangles, 3 * triangle + k)
         x, y, z = f32(scene.normals, at), f32(scene.normals, at + 1), f32(scene.normals, at + 2)
-        n3 = unit((x * side, y * side, z * side))
+        n3 = normalize((x * side, y * side, z * side))
         below = min(0.0, dot((position[0] - p[0], position[1] - p[1], position[2] - p[2]), n3))
         out = (
             out[0] - weight * below * n3[0],
@@ -168,7 +170,7 @@ def terminator_point(
 
 
 @inner
-def kept_above(direction: V3, geometric: V3) -> V3:
+def keep_above(direction: V3, geometric: V3) -> V3:
     """``direction``, turned back over the face where an interpolated normal sent it below."""
     below = dot(direction, geometric)
     if below >= 0.0:

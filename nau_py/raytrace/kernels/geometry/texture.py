@@ -14,7 +14,7 @@ REPEAT, MIRRORED_REPEAT, CLAMP_TO_EDGE, CLAMP_TO_BORDER = 0, 1, 2, 3
 
 
 @inner
-def wrapped(index: float, size: float, rule: int) -> int:
+def wrap_index(index: float, size: float, rule: int) -> int:
     """The texel index by wrap rule; -1 on the border colour."""
     if 0.0 <= index < size:
         return int(index)
@@ -29,18 +29,18 @@ def wrapped(index: float, size: float, rule: int) -> int:
 
 
 @inner
-def fetch(texture: Any, texels: int, x: float, y: float) -> RGBA:
+def fetch_texel(texture: Any, texels: int, x: float, y: float) -> RGBA:
     """One texel, 0 to 255; ``texels``: the address of the bytes, in the order R, G, B, A."""
-    column = wrapped(x, float(texture.width), texture.wrap_s)
-    row = wrapped(y, float(texture.height), texture.wrap_t)
+    column = wrap_index(x, float(texture.width), texture.wrap_s)
+    row = wrap_index(y, float(texture.height), texture.wrap_t)
     if column < 0 or row < 0:
         b = border_of(texture)
         return b[0] * 255.0, b[1] * 255.0, b[2] * 255.0, b[3] * 255.0
-    return bytes_of(i32(texels, (texture.offset >> 2) + row * texture.width + column))
+    return unpack_bytes(i32(texels, (texture.offset >> 2) + row * texture.width + column))
 
 
 @inner
-def bytes_of(word: int) -> RGBA:
+def unpack_bytes(word: int) -> RGBA:
     """The four bytes of a texel."""
     return (
         float(word & 255),
@@ -51,7 +51,7 @@ def bytes_of(word: int) -> RGBA:
 
 
 @inner
-def placed(texture: Any, s: float, t: float) -> tuple[float, float]:
+def scale_to_texels(texture: Any, s: float, t: float) -> tuple[float, float]:
     """Texture coordinates in texels. Those that repeat are brought into the image first."""
     if not (isfinite(s) and isfinite(t)):
         return 0.0, 0.0
@@ -63,31 +63,31 @@ def placed(texture: Any, s: float, t: float) -> tuple[float, float]:
 
 
 @inner
-def inside(texture: Any, x0: float, y0: float) -> bool:
+def is_interior(texture: Any, x0: float, y0: float) -> bool:
     """Whether the four texels from (x0, y0) on lie in the image."""
     return bool(x0 >= 0.0 and y0 >= 0.0 and x0 + 1 < texture.width and y0 + 1 < texture.height)
 
 
 @inner
-def lookup(texture: Any, texels: int, s: float, t: float) -> RGBA:
+def filter_texture(texture: Any, texels: int, s: float, t: float) -> RGBA:
     """RGBA at texture coordinates; the linear filter of the OpenGL 4.5 specification, 8.14.2."""
-    x, y = placed(texture, s, t)
+    x, y = scale_to_texels(texture, s, t)
     if texture.nearest:
-        a = fetch(texture, texels, floor(x), floor(y))
+        a = fetch_texel(texture, texels, floor(x), floor(y))
         return a[0] / 255.0, a[1] / 255.0, a[2] / 255.0, a[3] / 255.0
     x, y = x - 0.5, y - 0.5
     x0, y0 = floor(x), floor(y)
     fx, fy = x - x0, y - y0
-    if inside(texture, x0, y0):
+    if is_interior(texture, x0, y0):
         at = (texture.offset >> 2) + int(y0) * texture.width + int(x0)
-        a, b = bytes_of(i32(texels, at)), bytes_of(i32(texels, at + 1))
+        a, b = unpack_bytes(i32(texels, at)), unpack_bytes(i32(texels, at + 1))
         at += texture.width
-        c, d = bytes_of(i32(texels, at)), bytes_of(i32(texels, at + 1))
+        c, d = unpack_bytes(i32(texels, at)), unpack_bytes(i32(texels, at + 1))
     else:
-        a = fetch(texture, texels, x0, y0)
-        b = fetch(texture, texels, x0 + 1, y0)
-        c = fetch(texture, texels, x0, y0 + 1)
-        d = fetch(texture, texels, x0 + 1, y0 + 1)
+        a = fetch_texel(texture, texels, x0, y0)
+        b = fetch_texel(texture, texels, x0 + 1, y0)
+        c = fetch_texel(texture, texels, x0, y0 + 1)
+        d = fetch_texel(texture, texels, x0 + 1, y0 + 1)
     high, low = fy / 255.0, (1 - fy) / 255.0
     wa, wb, wc, wd = (1 - fx) * low, fx * low, (1 - fx) * high, fx * high
     return (
@@ -99,12 +99,12 @@ def lookup(texture: Any, texels: int, s: float, t: float) -> RGBA:
 
 
 @inner
-def alpha(texture: Any, texels: int, s: float, t: float) -> float:
-    """The last component of ``lookup``, for less."""
-    x, y = placed(texture, s, t)
+def filter_alpha(texture: Any, texels: int, s: float, t: float) -> float:
+    """The last component of ``filter_texture``, for less."""
+    x, y = scale_to_texels(texture, s, t)
     x0, y0 = floor(x - 0.5), floor(y - 0.5)
-    if texture.nearest or not inside(texture, x0, y0):
-        return lookup(texture, texels, s, t)[3]
+    if texture.nearest or not is_interior(texture, x0, y0):
+        return filter_texture(texture, texels, s, t)[3]
     fx, fy = x - 0.5 - x0, y - 0.5 - y0
     at = texture.offset + 4 * (int(y0) * texture.width + int(x0)) + 3
     below = 4 * texture.width

@@ -22,7 +22,7 @@ from nau_py.raytrace.kernels.core.memory import (
     put_f32,
     put_i32,
     put_i64,
-    record_at,
+    record_reader,
 )
 from nau_py.raytrace.kernels.core.tables import CONTINUATION, QUERY, SCENE, USER
 from nau_py.raytrace.kernels.intersect.embree import (
@@ -37,7 +37,7 @@ from nau_py.raytrace.kernels.intersect.embree import (
 )
 from nau_py.raytrace.kernels.intersect.visibility import opacity
 
-_query_at, _scene_at = record_at(QUERY), record_at(SCENE)
+_query_at, _scene_at = record_reader(QUERY), record_reader(SCENE)
 _VALID, _IGNORED = -1, 0
 SAME = 1e-6
 """Relative difference of distances of what counts as one layer."""

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.raytrace.kernels.core.jit import V3, cycles, inner
+from nau_py.raytrace.kernels.core.jit import V3, inner, read_cycles
 from nau_py.raytrace.kernels.core.memory import f32, i8, i32, i64, put_f32, put_i64
 from nau_py.raytrace.kernels.core.tables import (
     DECIDED,
@@ -47,7 +47,7 @@ from nau_py.raytrace.kernels.intersect.visibility import (
 @inner
 def see(scene: Any, tile: Any, ray_type: int, lanes: int) -> None:
     """What the first ``lanes`` rays of the packet see, 0 to 1, into ``tile.seen``."""
-    packet, begun = tile.packet, cycles()
+    packet, begun = tile.packet, read_cycles()
     if i8(scene.has_any_hit, ray_type) <= DECIDED and narrow(packet, lanes):
         blocked_packet(scene, tile, ask(scene, tile, ray_type, COHERENT), lanes)
         for lane in range(lanes):

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from nau_py.raytrace.kernels.core.codes import ALPHA_TEST, NONE, ONE_SIDED, STOCHASTIC_ALPHA
-from nau_py.raytrace.kernels.core.jit import V3, cycles, inner
+from nau_py.raytrace.kernels.core.jit import V3, inner, read_cycles
 from nau_py.raytrace.kernels.core.memory import i8, i32, i64, put_i64
-from nau_py.raytrace.kernels.core.sampling import uniform
+from nau_py.raytrace.kernels.core.sampling import sample_1d
 from nau_py.raytrace.kernels.core.tables import (
     CONTINUATION,
     CUT,
@@ -22,7 +22,7 @@ from nau_py.raytrace.kernels.core.tables import (
     material_at,
 )
 from nau_py.raytrace.kernels.core.vec import dot
-from nau_py.raytrace.kernels.geometry.surface import spawn, surface_point, texel_alpha
+from nau_py.raytrace.kernels.geometry.surface import evaluate_alpha, locate_point, offset_origin
 from nau_py.raytrace.kernels.intersect.embree import ask, blocked, hit, nearest, whose
 
 ALPHA_THRESHOLD = 0.25
@@ -41,7 +41,7 @@ def count(tile: Any, slot: int) -> None:
 @inner
 def spent(tile: Any, since: int) -> None:
     """Note the cycles since ``since`` as those of rays."""
-    put_i64(tile.counts, IN_EMBREE, i64(tile.counts, IN_EMBREE) + cycles() - since)
+    put_i64(tile.counts, IN_EMBREE, i64(tile.counts, IN_EMBREE) + read_cycles() - since)
 
 
 @inner
@@ -76,15 +76,15 @@ def opacity(
     if code == NONE or code == USER:
         return 1.0
     if code == ONE_SIDED:
-        return 1.0 if dot(surface_point(scene, triangle, u, v)[1], direction) < 0.0 else 0.0
+        return 1.0 if dot(locate_point(scene, triangle, u, v)[1], direction) < 0.0 else 0.0
     material = material_at(scene.materials, owner)
-    alpha = texel_alpha(scene, material, triangle, u, v)
+    alpha = evaluate_alpha(scene, material, triangle, u, v)
     if code == ALPHA_TEST:
         return 1.0 if alpha > ALPHA_THRESHOLD else 0.0
     alpha = min(max(alpha * diffuse_of(material)[3], 0.0), 1.0)
     if code == STOCHASTIC_ALPHA:
         key = np.uint32(0x40000000 + triangle * 32 + min(depth, 31))
-        return 1.0 if uniform(scene.seed, pixel, sample, key) < alpha else 0.0
+        return 1.0 if sample_1d(scene.seed, pixel, sample, key) < alpha else 0.0
     return alpha
 
 
@@ -126,8 +126,8 @@ def visibility(
         through *= 1.0 - stopped
         if through < FAINT:
             return 0.0
-        p, n, bound = surface_point(scene, triangle, u, v)
-        origin = spawn(p, n, bound, direction)
+        p, n, bound = locate_point(scene, triangle, u, v)
+        origin = offset_origin(p, n, bound, direction)
         tmax = max(tmax - t, 0.0)
         count(tile, CONTINUATION)
     count(tile, CUT)

@@ -8,20 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.core.jit import V3, inner, kernel
-from nau_py.raytrace.kernels.core.sampling import uniform
+from nau_py.raytrace.kernels.core.sampling import sample_1d
 from nau_py.raytrace.kernels.core.tables import CANDIDATE, LANES, heading_of, origin_of, weight_of
-from nau_py.raytrace.kernels.core.vec import unit
+from nau_py.raytrace.kernels.core.vec import normalize
 from nau_py.raytrace.kernels.geometry.surface import (
-    attribute,
-    facing,
-    shading_normal,
-    spawn,
-    surface_point,
+    face_forward,
+    interpolate_attribute,
+    interpolate_normal,
+    locate_point,
+    offset_origin,
 )
-from nau_py.raytrace.kernels.geometry.texture import lookup
+from nau_py.raytrace.kernels.geometry.texture import filter_texture
 from nau_py.raytrace.kernels.intersect.embree import RAY_FLOATS, blank, blocked, hit, nearest
 from nau_py.raytrace.kernels.intersect.visibility import finite
-from nau_py.raytrace.kernels.shading.sample_bsdf import pass_through
+from nau_py.raytrace.kernels.shading.sample_bsdf import pass_hit
 
 F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]
@@ -39,7 +39,7 @@ def surface_points(
 ) -> None:
     """Positions, face normals and error bounds."""
     for i in range(triangle.shape[0]):
-        p, n, b = surface_point(scenes[0], int(triangle[i]), float(u[i]), float(v[i]))
+        p, n, b = locate_point(scenes[0], int(triangle[i]), float(u[i]), float(v[i]))
         bound[i] = b
         for k in range(3):
             position[i, k] = p[k]
@@ -49,7 +49,9 @@ def surface_points(
 @kernel
 def shading_normals(scenes: Any, triangle: I32, u: F32, v: F32, face: F32, out: F32) -> None:
     for i in range(triangle.shape[0]):
-        n = shading_normal(scenes[0], int(triangle[i]), float(u[i]), float(v[i]), vector(face, i))
+        n = interpolate_normal(
+            scenes[0], int(triangle[i]), float(u[i]), float(v[i]), vector(face, i)
+        )
         for k in range(3):
             out[i, k] = n[k]
 
@@ -58,7 +60,7 @@ def shading_normals(scenes: Any, triangle: I32, u: F32, v: F32, face: F32, out: 
 def faced(normal: F32, direction: F32, out: F32) -> None:
     """Normals turned towards where rays come from."""
     for i in range(normal.shape[0]):
-        n = facing(vector(normal, i), vector(direction, i))
+        n = face_forward(vector(normal, i), vector(direction, i))
         for k in range(3):
             out[i, k] = n[k]
 
@@ -67,7 +69,7 @@ def faced(normal: F32, direction: F32, out: F32) -> None:
 def attributes(scenes: Any, address: int, triangle: I32, u: F32, v: F32, out: F32) -> None:
     """The vertex attribute at ``address``, interpolated; as many components as ``out`` has."""
     for i in range(triangle.shape[0]):
-        a = attribute(address, scenes[0], int(triangle[i]), float(u[i]), float(v[i]))
+        a = interpolate_attribute(address, scenes[0], int(triangle[i]), float(u[i]), float(v[i]))
         for k in range(out.shape[1]):
             out[i, k] = a[k]
 
@@ -75,7 +77,7 @@ def attributes(scenes: Any, address: int, triangle: I32, u: F32, v: F32, out: F3
 @kernel
 def texture_values(textures: Any, texels: int, uv: F32, out: F32) -> None:
     for i in range(uv.shape[0]):
-        c = lookup(textures[0], texels, float(uv[i, 0]), float(uv[i, 1]))
+        c = filter_texture(textures[0], texels, float(uv[i, 0]), float(uv[i, 1]))
         for k in range(4):
             out[i, k] = c[k]
 
@@ -86,8 +88,8 @@ def departures(
 ) -> None:
     """Spawn points and unit directions of rays that leave surfaces."""
     for i in range(position.shape[0]):
-        d = unit(vector(direction, i))
-        o = spawn(vector(position, i), vector(face, i), float(bound[i]), d)
+        d = normalize(vector(direction, i))
+        o = offset_origin(vector(position, i), vector(face, i), float(bound[i]), d)
         for k in range(3):
             origin[i, k] = o[k]
             unit_direction[i, k] = d[k]
@@ -107,8 +109,8 @@ def departures_of(
     surface."""
     for k in range(chosen.shape[0]):
         i = chosen[k]
-        d = unit(vector(direction, i if direction.shape[0] > 1 else 0))
-        o = spawn(vector(position, i), vector(face, i), float(bound[i]), d)
+        d = normalize(vector(direction, i if direction.shape[0] > 1 else 0))
+        o = offset_origin(vector(position, i), vector(face, i), float(bound[i]), d)
         for m in range(3):
             origin[k, m] = o[m]
             unit_direction[k, m] = d[m]
@@ -131,7 +133,7 @@ def uniforms(
 ) -> None:
     """Numbers in [0, 1) by pixel, sample and dimension."""
     for i in range(pixel.shape[0]):
-        out[i] = uniform(np.uint32(seed), pixel[i], sample[i], np.uint32(dimension))
+        out[i] = sample_1d(np.uint32(seed), pixel[i], sample[i], np.uint32(dimension))
 
 
 @kernel
@@ -173,7 +175,7 @@ def unpack(
 def pass_all(scenes: Any, paths: NDArray[Any]) -> None:
     """Send paths on behind their ignored hits."""
     for i in range(paths.shape[0]):
-        pass_through(scenes[0], paths[i])
+        pass_hit(scenes[0], paths[i])
 
 
 @kernel

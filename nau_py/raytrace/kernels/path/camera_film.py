@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.core.jit import V3, inner, kernel
-from nau_py.raytrace.kernels.core.memory import getter
-from nau_py.raytrace.kernels.core.sampling import on_disk, sobol2, uniform
+from nau_py.raytrace.kernels.core.memory import field_reader
+from nau_py.raytrace.kernels.core.sampling import sample_1d, sample_2d, sample_disk
 from nau_py.raytrace.kernels.core.tables import (
     PRIMARY,
     TRACE,
@@ -19,7 +19,7 @@ from nau_py.raytrace.kernels.core.tables import (
     set_origin,
     set_weight,
 )
-from nau_py.raytrace.kernels.core.vec import dot, minus, plus, scaled, unit
+from nau_py.raytrace.kernels.core.vec import add, dot, normalize, scale, subtract
 
 CAMERA = np.dtype(
     [
@@ -40,9 +40,9 @@ CAMERA = np.dtype(
 lower left corner, and the size of a pixel there. ``aperture``: radius of the lens; ``focus``:
 distance along ``forward`` at which it is sharp."""
 
-_position, _forward = getter(CAMERA, "position"), getter(CAMERA, "forward")
-_right, _up = getter(CAMERA, "right"), getter(CAMERA, "up")
-_base, _step = getter(CAMERA, "base"), getter(CAMERA, "step")
+_position, _forward = field_reader(CAMERA, "position"), field_reader(CAMERA, "forward")
+_right, _up = field_reader(CAMERA, "right"), field_reader(CAMERA, "up")
+_base, _step = field_reader(CAMERA, "base"), field_reader(CAMERA, "step")
 
 CENTRE, JITTER, STRATA, SOBOL = range(4)
 """Where the samples of a pixel lie."""
@@ -62,18 +62,18 @@ def camera_ray(camera: Any, x: float, y: float, lx: float, ly: float) -> tuple[V
     base, step = _base(camera), _step(camera)
     sx, sy = base[0] + x * step[0], base[1] + y * step[1]
     forward, right, up = _forward(camera), _right(camera), _up(camera)
-    across = plus(scaled(right, sx), scaled(up, sy))
+    across = add(scale(right, sx), scale(up, sy))
     position = _position(camera)
     if camera.ortho:
-        return plus(position, plus(scaled(forward, camera.near), across)), forward
-    plane = plus(forward, across)
+        return add(position, add(scale(forward, camera.near), across)), forward
+    plane = add(forward, across)
     if not camera.aperture > 0.0:
-        return plus(position, scaled(plane, camera.near)), unit(plane)
-    sharp = plus(position, scaled(plane, camera.focus))
-    offset = plus(scaled(right, camera.aperture * lx), scaled(up, camera.aperture * ly))
-    lens = plus(position, offset)
-    d = unit(minus(sharp, lens))
-    return plus(lens, scaled(d, camera.near / dot(d, forward))), d
+        return add(position, scale(plane, camera.near)), normalize(plane)
+    sharp = add(position, scale(plane, camera.focus))
+    offset = add(scale(right, camera.aperture * lx), scale(up, camera.aperture * ly))
+    lens = add(position, offset)
+    d = normalize(subtract(sharp, lens))
+    return add(lens, scale(d, camera.near / dot(d, forward))), d
 
 
 @kernel
@@ -128,17 +128,17 @@ def start(
     reset(path)
     dx, dy = 0.5, 0.5
     if rule == SOBOL:
-        dx, dy = sobol2(seed, pixel, sample, np.uint32(0))
+        dx, dy = sample_2d(seed, pixel, sample, np.uint32(0))
     elif rule != CENTRE:
-        dx = uniform(seed, pixel, sample, np.uint32(0))
-        dy = uniform(seed, pixel, sample, np.uint32(1))
+        dx = sample_1d(seed, pixel, sample, np.uint32(0))
+        dy = sample_1d(seed, pixel, sample, np.uint32(1))
         if rule == STRATA:
             dx = min((number % side + dx) / side, 0.99999994)
             dy = min((number // side % side + dy) / side, 0.99999994)
     lx, ly = 0.0, 0.0
     if lens:
-        a, b = sobol2(seed, pixel, sample, np.uint32(2))
-        lx, ly = on_disk(a, b)
+        a, b = sample_2d(seed, pixel, sample, np.uint32(2))
+        lx, ly = sample_disk(a, b)
     row = int(flat / width)  # exact below 2^53, and faster than integer division
     o, d = camera_ray(camera, flat - row * width + dx, row + dy, lx, ly)
     set_origin(path, o)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 from nau_py.raytrace.kernels.core.codes import BACKGROUND, NONE, TRANSPARENCY, UNOCCLUDED
-from nau_py.raytrace.kernels.core.jit import cycles, inner
+from nau_py.raytrace.kernels.core.jit import inner, read_cycles
 from nau_py.raytrace.kernels.core.memory import f32, i8, i32, i64, put_i32, put_i64
 from nau_py.raytrace.kernels.core.tables import (
     AMBIENT,
@@ -61,9 +61,9 @@ from nau_py.raytrace.kernels.intersect.visibility import (
     sound,
     spent,
 )
-from nau_py.raytrace.kernels.shading.closest_hit import shade
-from nau_py.raytrace.kernels.shading.direct import add, defer, rgb
-from nau_py.raytrace.kernels.shading.sample_bsdf import absorb, pass_through
+from nau_py.raytrace.kernels.shading.closest_hit import evaluate_material
+from nau_py.raytrace.kernels.shading.direct import add_radiance, defer_path, take_rgb
+from nau_py.raytrace.kernels.shading.sample_bsdf import apply_absorption, pass_hit
 
 
 @inner
@@ -71,15 +71,15 @@ def missed(scene: Any, tile: Any, ray_type: int, path: Any) -> None:
     """Run the miss program of the ray type."""
     code = i8(scene.miss, ray_type)
     if code == USER:
-        defer(tile, path, MISSED)
+        defer_path(tile, path, MISSED)
     elif code == BACKGROUND:
         b = background_of(scene)
-        add(tile, path, rgb(b), b[3])
+        add_radiance(tile, path, take_rgb(b), b[3])
     elif code == UNOCCLUDED:
-        add(tile, path, (1.0, 1.0, 1.0), 1.0)
+        add_radiance(tile, path, (1.0, 1.0, 1.0), 1.0)
     elif path.initial != 0.0:
         initial = float(path.initial)
-        add(tile, path, (initial, initial, initial), initial)
+        add_radiance(tile, path, (initial, initial, initial), initial)
 
 
 @inner
@@ -91,7 +91,7 @@ def split(scene: Any, tile: Any, path: Any, stopped: float) -> None:
     w, on = weight_of(path), 1.0 - stopped
     set_weight(rest, (w[0] * on, w[1] * on, w[2] * on, w[3] * on))
     set_weight(path, (w[0] * stopped, w[1] * stopped, w[2] * stopped, w[3] * stopped))
-    pass_through(scene, rest)
+    pass_hit(scene, rest)
 
 
 @inner
@@ -135,14 +135,14 @@ def any_hit(scene: Any, tile: Any, ray_type: int, path: Any) -> bool:
         count(tile, CUT)
         return True
     if code == USER:
-        defer(tile, path, CANDIDATE)
+        defer_path(tile, path, CANDIDATE)
         return False
     stopped = opacity(
         scene, ray_type, int(path.triangle), float(path.u), float(path.v), heading_of(path),
         path.pixel, path.sample, int(path.depth),
     )  # fmt: skip
     if stopped <= 0.0:
-        pass_through(scene, path)
+        pass_hit(scene, path)
         return False
     if stopped < 1.0 and tile.top < STACK:
         split(scene, tile, path, stopped)
@@ -158,7 +158,7 @@ def arrive(scene: Any, tile: Any, ray_type: int, path: Any) -> bool:
             return False
         m = media_of(path)
         if max(m[0], m[1], m[2], m[3]) >= 0:
-            absorb(scene, path)
+            apply_absorption(scene, path)
         layers = path.layers
         if not any_hit(scene, tile, ray_type, path):
             return bool(path.layers > layers)
@@ -169,10 +169,10 @@ def arrive(scene: Any, tile: Any, ray_type: int, path: Any) -> bool:
     if path.kind == PRIMARY:
         put_i32(tile.viewed, i32(scene.owner, path.triangle), 1)
     if code == USER:
-        defer(tile, path, HIT)
+        defer_path(tile, path, HIT)
         return False
     path.status = SHADE
-    return shade(scene, tile, ray_type, code, path)
+    return evaluate_material(scene, tile, ray_type, code, path)
 
 
 @inner
@@ -224,7 +224,7 @@ def step(scene: Any, tile: Any, ray_type: int, size: int) -> int:
             board(tile, path, lanes, which)
             lanes += 1
     if lanes > 0:
-        begun = cycles()
+        begun = read_cycles()
         shoot(scene, tile, ray_type, lanes)
         spent(tile, begun)
     going = 0

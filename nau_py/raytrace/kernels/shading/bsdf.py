@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.core.jit import V3, inner, kernel
 from nau_py.raytrace.kernels.core.memory import f64
-from nau_py.raytrace.kernels.core.sampling import sobol2
-from nau_py.raytrace.kernels.core.vec import cross, dot, unit
+from nau_py.raytrace.kernels.core.sampling import sample_2d
+from nau_py.raytrace.kernels.core.vec import cross, dot, normalize
 
 SMOOTH = 1e-3
 """GGX alpha up to which a surface is a perfect mirror."""
@@ -19,7 +19,7 @@ TABLE = 32
 
 
 @inner
-def fresnel(cosine: float, eta: float) -> tuple[float, float]:
+def evaluate_fresnel(cosine: float, eta: float) -> tuple[float, float]:
     """Reflectance of unpolarised light and the cosine of the refracted direction.
 
     ``cosine`` in [0, 1]: of the arriving angle; ``eta``: index behind over index before. Total
@@ -35,14 +35,17 @@ def fresnel(cosine: float, eta: float) -> tuple[float, float]:
 
 
 @inner
-def refracted(d: V3, n: V3, cosine: float, behind: float, eta: float) -> V3:
-    """Snell's direction: ``n`` faces the arriving unit ``d``; both cosines from ``fresnel``."""
+def refract(d: V3, n: V3, cosine: float, behind: float, eta: float) -> V3:
+    """Snell's direction: ``n`` faces the arriving unit ``d``.
+
+    ``cosine`` and ``behind``: of the arriving angle and of the refracted one, from
+    ``evaluate_fresnel``."""
     k = cosine / eta - behind
-    return unit((d[0] / eta + k * n[0], d[1] / eta + k * n[1], d[2] / eta + k * n[2]))
+    return normalize((d[0] / eta + k * n[0], d[1] / eta + k * n[1], d[2] / eta + k * n[2]))
 
 
 @inner
-def smith(z: float, alpha: float) -> float:
+def evaluate_masking(z: float, alpha: float) -> float:
     """Smith's masking G1 of GGX for a direction with cosine ``z`` (Heitz 2014, eq. 72)."""
     c2 = z * z
     tangent2 = max(0.0, 1.0 - c2) / max(c2, 1e-30)
@@ -50,10 +53,10 @@ def smith(z: float, alpha: float) -> float:
 
 
 @inner
-def visible_normal(w: V3, alpha: float, x: float, y: float) -> V3:
+def sample_visible_normal(w: V3, alpha: float, x: float, y: float) -> V3:
     """A microfacet normal seen from ``w``; Heitz, *Sampling the GGX Distribution of Visible
     Normals*, JCGT 7(4), 2018."""
-    v = unit((alpha * w[0], alpha * w[1], w[2]))
+    v = normalize((alpha * w[0], alpha * w[1], w[2]))
     length2 = v[0] * v[0] + v[1] * v[1]
     if length2 > 1e-16:
         k = 1.0 / sqrt(length2)
@@ -71,26 +74,26 @@ def visible_normal(w: V3, alpha: float, x: float, y: float) -> V3:
         p1 * a[1] + p2 * b[1] + p3 * v[1],
         p1 * a[2] + p2 * b[2] + p3 * v[2],
     )
-    return unit((alpha * n[0], alpha * n[1], max(0.0, n[2])))
+    return normalize((alpha * n[0], alpha * n[1], max(0.0, n[2])))
 
 
 @inner
-def ggx(w: V3, alpha: float, x: float, y: float) -> tuple[V3, float]:
+def sample_ggx(w: V3, alpha: float, x: float, y: float) -> tuple[V3, float]:
     """A reflected direction in the frame of the normal, and its weight G2/G1.
 
     The weight is 0 below the horizon. Height-correlated masking (Heitz 2014, eq. 99).
     """
-    m = visible_normal(w, alpha, x, y)
+    m = sample_visible_normal(w, alpha, x, y)
     k = 2.0 * dot(w, m)
     out = (k * m[0] - w[0], k * m[1] - w[1], k * m[2] - w[2])
     if out[2] <= 0.0:
         return out, 0.0
-    gi, go = smith(w[2], alpha), smith(out[2], alpha)
+    gi, go = evaluate_masking(w[2], alpha), evaluate_masking(out[2], alpha)
     return out, go / (gi + go - gi * go)
 
 
 @kernel
-def albedo_table(samples: int) -> NDArray[np.float64]:
+def make_albedo_table(samples: int) -> NDArray[np.float64]:
     """Directional albedo of GGX without Fresnel, [roughness, cosine], both in steps of 1/31.
 
     What one scattering event keeps; the rest is multiple scattering, which Turquin,
@@ -105,14 +108,14 @@ def albedo_table(samples: int) -> NDArray[np.float64]:
             w = (sqrt(1.0 - z * z), 0.0, z)
             total = 0.0
             for k in range(samples):
-                x, y = sobol2(np.uint32(1), np.uint32(i), np.uint32(k), np.uint32(j))
-                total += ggx(w, alpha, x, y)[1]
+                x, y = sample_2d(np.uint32(1), np.uint32(i), np.uint32(k), np.uint32(j))
+                total += sample_ggx(w, alpha, x, y)[1]
             table[i, j] = total / samples
     return table
 
 
 @inner
-def albedo(table: int, roughness: float, cosine: float) -> float:
+def look_up_albedo(table: int, roughness: float, cosine: float) -> float:
     """The value of the table at address ``table``, bilinear."""
     x = min(max(roughness, 0.0), 1.0) * (TABLE - 1)
     y = min(max(cosine, 0.0), 1.0) * (TABLE - 1)

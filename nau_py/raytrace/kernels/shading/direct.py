@@ -13,7 +13,7 @@ import numpy as np
 from nau_py.raytrace.kernels.core.codes import LAMBERT, PHONG
 from nau_py.raytrace.kernels.core.jit import V3, inner
 from nau_py.raytrace.kernels.core.memory import f32, i8, put_f32
-from nau_py.raytrace.kernels.core.sampling import cosine_hemisphere, sobol2
+from nau_py.raytrace.kernels.core.sampling import sample_2d, sample_hemisphere
 from nau_py.raytrace.kernels.core.tables import (
     AMBIENT,
     OCCLUSION,
@@ -33,16 +33,16 @@ from nau_py.raytrace.kernels.core.tables import (
     weight_of,
 )
 from nau_py.raytrace.kernels.core.vec import (
-    basis,
+    add,
     dot,
-    in_frame,
-    plus,
-    reflected,
-    scaled,
-    times,
-    unit,
+    from_frame,
+    make_frame,
+    multiply,
+    normalize,
+    reflect,
+    scale,
 )
-from nau_py.raytrace.kernels.geometry.surface import facing, spawn
+from nau_py.raytrace.kernels.geometry.surface import face_forward, offset_origin
 from nau_py.raytrace.kernels.geometry.texture import RGBA
 from nau_py.raytrace.kernels.intersect.embree import INFINITE
 from nau_py.raytrace.kernels.intersect.shadow_rays import collect
@@ -53,7 +53,7 @@ from nau_py.raytrace.kernels.intersect.visibility import (
     sound,
     visibility,
 )
-from nau_py.raytrace.kernels.shading.lights import arriving
+from nau_py.raytrace.kernels.shading.lights import sample_light
 
 AMBIENT_FACTOR = 0.3
 LIGHT_DIMENSION = 0x1000
@@ -63,15 +63,15 @@ HIT_DIMENSIONS = 16
 
 
 @inner
-def rgb(c: RGBA) -> V3:
+def take_rgb(c: RGBA) -> V3:
     return c[0], c[1], c[2]
 
 
 @inner
-def add(tile: Any, path: Any, colour: V3, alpha: float) -> None:
+def add_radiance(tile: Any, path: Any, colour: V3, alpha: float) -> None:
     """Add what arrives at the end of ``path``."""
     at = 4 * path.index
-    w, c = weight_of(path), banded(path, colour)
+    w, c = weight_of(path), select_band(path, colour)
     put_f32(tile.radiance, at, f32(tile.radiance, at) + w[0] * c[0])
     put_f32(tile.radiance, at + 1, f32(tile.radiance, at + 1) + w[1] * c[1])
     put_f32(tile.radiance, at + 2, f32(tile.radiance, at + 2) + w[2] * c[2])
@@ -79,7 +79,7 @@ def add(tile: Any, path: Any, colour: V3, alpha: float) -> None:
 
 
 @inner
-def banded(path: Any, colour: V3) -> V3:
+def select_band(path: Any, colour: V3) -> V3:
     """The colour as the path sees it: one band of it after a fluorescent surface."""
     if path.band < 0:
         return colour
@@ -88,7 +88,7 @@ def banded(path: Any, colour: V3) -> V3:
 
 
 @inner
-def defer(tile: Any, path: Any, status: int) -> Any:
+def defer_path(tile: Any, path: Any, status: int) -> Any:
     """Queue ``path`` for Python; returns the copy. ``waiting`` counts on past a full queue."""
     at = min(tile.waiting, tile.capacity)
     tile.waiting += 1
@@ -99,7 +99,7 @@ def defer(tile: Any, path: Any, status: int) -> Any:
 
 
 @inner
-def light_term(
+def add_light(
     scene: Any,
     tile: Any,
     ray_type: int,
@@ -114,7 +114,7 @@ def light_term(
     ``source``: the number of the light."""
     if light[0] == 0.0 and light[1] == 0.0 and light[2] == 0.0:
         return
-    w, c = weight_of(path), banded(path, light)
+    w, c = weight_of(path), select_band(path, light)
     arriving = (w[0] * c[0], w[1] * c[1], w[2] * c[2])
     if skips(scene, SHADOW):
         count(tile, SKIPPED + SHADOW)
@@ -123,7 +123,7 @@ def light_term(
             put_f32(tile.radiance, at + k, f32(tile.radiance, at + k) + arriving[k])
         return
     if i8(scene.deferred_shadows, shadow_type_of(scene, ray_type)) != 0:
-        late = defer(tile, path, OCCLUSION)
+        late = defer_path(tile, path, OCCLUSION)
         set_origin(late, origin)
         set_heading(late, direction)
         late.tmax = tmax
@@ -133,7 +133,7 @@ def light_term(
 
 
 @inner
-def default_look(
+def shade_default(
     scene: Any,
     tile: Any,
     ray_type: int,
@@ -147,52 +147,52 @@ def default_look(
     """Nau's default material (docs/format.md, 8.5) by the first light, with shadows where the pass
     has a ray type for them; for Phong's models with the highlight SPECULAR cos^SHININESS. A light
     with a shape is the mean over its points."""
-    diffuse = rgb(diffuse_of(material))
-    rest = scaled(diffuse, AMBIENT_FACTOR)
+    diffuse = take_rgb(diffuse_of(material))
+    rest = scale(diffuse, AMBIENT_FACTOR)
     if material.texture >= 0:
         rest = (AMBIENT_FACTOR, AMBIENT_FACTOR, AMBIENT_FACTOR)
-    add(tile, path, times(plus(rest, emission_of(material)), texel), 1.0)
+    add_radiance(tile, path, multiply(add(rest, emission_of(material)), texel), 1.0)
     if scene.lights_count == 0:
         return
     light = light_at(scene.lights, 0)
-    samples = light_samples(scene, light)
+    samples = count_light_samples(scene, light)
     for k in range(samples):
         number = np.uint32(path.sample * samples + k)
         dimension = np.uint32(LIGHT_DIMENSION + path.depth * 64)
         x, y = 0.5, 0.5
         if light.shape >= RECTANGLE:
-            x, y = sobol2(scene.seed, path.pixel, number, dimension)
-        to, distance, colour = arriving(light, origin, x, y)
-        unit_to = unit(to)
+            x, y = sample_2d(scene.seed, path.pixel, number, dimension)
+        to, distance, colour = sample_light(light, origin, x, y)
+        unit_to = normalize(to)
         cosine = dot(normal, unit_to)
         if not (distance > 0.0 and cosine > 0.0):
             continue
-        colour = scaled(colour, 1.0 / samples)
-        lit = times(scaled(times(diffuse, colour), cosine), texel)
+        colour = scale(colour, 1.0 / samples)
+        lit = multiply(scale(multiply(diffuse, colour), cosine), texel)
         if code != LAMBERT:
-            away = scaled(heading_of(path), -1.0)
+            away = scale(heading_of(path), -1.0)
             if code == PHONG:
-                lobe = dot(reflected(scaled(unit_to, -1.0), normal), away)
+                lobe = dot(reflect(scale(unit_to, -1.0), normal), away)
             else:
-                lobe = dot(unit(plus(unit_to, away)), normal)
+                lobe = dot(normalize(add(unit_to, away)), normal)
             if lobe > 0.0:
                 shine = lobe ** float(material.shininess)
-                lit = plus(lit, scaled(times(specular_of(material), colour), shine))
+                lit = add(lit, scale(multiply(specular_of(material), colour), shine))
         if scene.shadow_type < 0:
-            add(tile, path, lit, 0.0)
+            add_radiance(tile, path, lit, 0.0)
         else:
             tmax = 1.0 if distance < INFINITE else INFINITE
-            light_term(scene, tile, ray_type, path, 0, origin, to, tmax, lit)
+            add_light(scene, tile, ray_type, path, 0, origin, to, tmax, lit)
 
 
 @inner
-def light_samples(scene: Any, light: Any) -> int:
+def count_light_samples(scene: Any, light: Any) -> int:
     """Shadow rays for one light: more than one only where it has an area."""
     return max(int(scene.light_samples), 1) if light.shape >= RECTANGLE else 1
 
 
 @inner
-def direct_light(
+def sample_lights(
     scene: Any,
     tile: Any,
     ray_type: int,
@@ -204,12 +204,12 @@ def direct_light(
     """What every light of the pass brings to a diffuse surface, with shadows."""
     for index in range(scene.lights_count):
         light = light_at(scene.lights, index)
-        samples = light_samples(scene, light)
+        samples = count_light_samples(scene, light)
         dimension = np.uint32(LIGHT_DIMENSION + path.depth * 64 + index)
         for k in range(samples):
             number = np.uint32(path.sample * samples + k)
-            x, y = sobol2(scene.seed, path.pixel, number, dimension)
-            to, distance, colour = arriving(light, origin, x, y)
+            x, y = sample_2d(scene.seed, path.pixel, number, dimension)
+            to, distance, colour = sample_light(light, origin, x, y)
             length = distance if distance < INFINITE else 1.0
             if not length > 0.0:
                 continue
@@ -217,12 +217,12 @@ def direct_light(
             if not cosine > 0.0:
                 continue
             tmax = 1.0 if distance < INFINITE else INFINITE
-            brought = scaled(times(albedo, colour), cosine / samples)
-            light_term(scene, tile, ray_type, path, index, origin, to, tmax, brought)
+            brought = scale(multiply(albedo, colour), cosine / samples)
+            add_light(scene, tile, ray_type, path, index, origin, to, tmax, brought)
 
 
 @inner
-def ambient_occlusion(
+def sample_occlusion(
     scene: Any,
     tile: Any,
     ray_type: int,
@@ -235,18 +235,18 @@ def ambient_occlusion(
 ) -> None:
     """Cosine-weighted sky visibility within the pass's OCCLUSION_DISTANCE, times the albedo."""
     samples = max(int(scene.light_samples), 1)
-    s, t = basis(normal)
-    geometric = facing(face, heading_of(path))
+    s, t = make_frame(normal)
+    geometric = face_forward(face, heading_of(path))
     open_ = 0.0
     for k in range(samples):
         number = np.uint32(path.sample * samples + k)
         dimension = np.uint32(HIT_DIMENSIONS * path.depth)
-        x, y = sobol2(scene.seed, path.pixel, number, dimension)
-        d = cosine_hemisphere(x, y)
-        to = in_frame(s, t, normal, d[0], d[1], d[2])
+        x, y = sample_2d(scene.seed, path.pixel, number, dimension)
+        d = sample_hemisphere(x, y)
+        to = from_frame(s, t, normal, d[0], d[1], d[2])
         if not dot(geometric, to) > 0.0:
             continue
-        origin = spawn(position, face, bound, to)
+        origin = offset_origin(position, face, bound, to)
         if not sound(tile, origin, to):
             continue
         if skips(scene, AMBIENT):
@@ -258,4 +258,4 @@ def ambient_occlusion(
             scene, tile, shadow_type_of(scene, ray_type), origin, to,
             float(scene.occlusion_distance), path.pixel, path.sample, int(path.depth),
         )  # fmt: skip
-    add(tile, path, scaled(albedo, open_ / samples), 1.0)
+    add_radiance(tile, path, scale(albedo, open_ / samples), 1.0)

@@ -13,7 +13,7 @@ import numpy as np
 
 from nau_py.raytrace.kernels.core.jit import V3, inner
 from nau_py.raytrace.kernels.core.memory import f64, i32
-from nau_py.raytrace.kernels.core.sampling import on_disk, on_sphere
+from nau_py.raytrace.kernels.core.sampling import sample_disk, sample_sphere
 from nau_py.raytrace.kernels.core.tables import (
     DIRECTIONAL,
     DISC,
@@ -27,30 +27,30 @@ from nau_py.raytrace.kernels.core.tables import (
     position_of,
     spot_of,
 )
-from nau_py.raytrace.kernels.core.vec import cross, dot, minus, plus, scaled, unit
-from nau_py.raytrace.kernels.geometry.surface import corner
+from nau_py.raytrace.kernels.core.vec import add, cross, dot, normalize, scale, subtract
+from nau_py.raytrace.kernels.geometry.surface import load_corner
 
 TINY = 1e-12
 """Squared distance, relative to coordinates, below which a light is on the surface itself."""
 
 
 @inner
-def light_point(light: Any, x: float, y: float) -> V3:
+def sample_light_point(light: Any, x: float, y: float) -> V3:
     """A uniform point of the light's shape."""
     p = position_of(light)
     if light.shape == RECTANGLE:
-        u, v = scaled(edge_u_of(light), x - 0.5), scaled(edge_v_of(light), y - 0.5)
-        return plus(p, plus(u, v))
+        u, v = scale(edge_u_of(light), x - 0.5), scale(edge_v_of(light), y - 0.5)
+        return add(p, add(u, v))
     if light.shape == DISC:
-        a, b = on_disk(x, y)
-        return plus(p, plus(scaled(edge_u_of(light), a), scaled(edge_v_of(light), b)))
+        a, b = sample_disk(x, y)
+        return add(p, add(scale(edge_u_of(light), a), scale(edge_v_of(light), b)))
     if light.shape == SPHERE:
-        return plus(p, scaled(on_sphere(x, y), light.radius))
+        return add(p, scale(sample_sphere(x, y), light.radius))
     return p
 
 
 @inner
-def arriving(light: Any, position: V3, x: float, y: float) -> tuple[V3, float, V3]:
+def sample_light(light: Any, position: V3, x: float, y: float) -> tuple[V3, float, V3]:
     """Vector to a point of the light, its length or infinity, and the colour that arrives.
 
     Attenuation and spot cone are Nau's: 1 / (c + l d + q d²), cos^exponent inside the cutoff. On
@@ -58,8 +58,8 @@ def arriving(light: Any, position: V3, x: float, y: float) -> tuple[V3, float, V
     """
     colour = colour_of(light)
     if light.shape == DIRECTIONAL:
-        return scaled(direction_of(light), -1.0), np.inf, colour
-    to = minus(light_point(light, x, y), position)
+        return scale(direction_of(light), -1.0), np.inf, colour
+    to = subtract(sample_light_point(light, x, y), position)
     distance2 = dot(to, to)
     if not distance2 > TINY * max(1.0, dot(position, position)):
         return (0.0, 0.0, 0.0), 0.0, (0.0, 0.0, 0.0)
@@ -70,11 +70,11 @@ def arriving(light: Any, position: V3, x: float, y: float) -> tuple[V3, float, V
     if light.cutoff > -1.0:
         along = -dot(to, spot_of(light)) / d
         factor *= along**light.exponent if along >= max(light.cutoff, 0.0) and along > 0 else 0.0
-    return to, d, scaled(colour, factor)
+    return to, d, scale(colour, factor)
 
 
 @inner
-def emitter_point(scene: Any, choice: float, x: float, y: float) -> tuple[int, V3, V3, float]:
+def sample_emitter(scene: Any, choice: float, x: float, y: float) -> tuple[int, V3, V3, float]:
     """Triangle, point, unit normal and density over area of a point of the emissive triangles."""
     low, high = 0, scene.emitters_count - 1
     while low < high:  # the last entry whose cumulative power does not exceed the choice
@@ -86,14 +86,18 @@ def emitter_point(scene: Any, choice: float, x: float, y: float) -> tuple[int, V
     triangle = i32(scene.emitters, low)
     root = sqrt(x)
     u, v = root * (1.0 - y), root * y
-    a, b, c = corner(scene, triangle, 0), corner(scene, triangle, 1), corner(scene, triangle, 2)
-    p = plus(a, plus(scaled(minus(b, a), u), scaled(minus(c, a), v)))
-    n = unit(cross(minus(b, a), minus(c, a)))
+    a, b, c = (
+        load_corner(scene, triangle, 0),
+        load_corner(scene, triangle, 1),
+        load_corner(scene, triangle, 2),
+    )
+    p = add(a, add(scale(subtract(b, a), u), scale(subtract(c, a), v)))
+    n = normalize(cross(subtract(b, a), subtract(c, a)))
     return triangle, p, n, f64(scene.emitter_pdf, triangle)
 
 
 @inner
-def power(a: float, b: float) -> float:
+def weigh_strategies(a: float, b: float) -> float:
     """The power heuristic for two strategies (Veach 1997, 9.2.4)."""
     if not a > 0.0:
         return 0.0

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from nau_py.raytrace.kernels.core.jit import V3, inner
-from nau_py.raytrace.kernels.core.sampling import cosine_hemisphere, sobol2
+from nau_py.raytrace.kernels.core.sampling import sample_2d, sample_hemisphere
 from nau_py.raytrace.kernels.core.tables import (
     INDIRECT,
     REFLECTION,
@@ -29,11 +29,22 @@ from nau_py.raytrace.kernels.core.tables import (
     specular_of,
     weight_of,
 )
-from nau_py.raytrace.kernels.core.vec import basis, dot, in_frame, reflected
-from nau_py.raytrace.kernels.geometry.surface import facing, kept_above, spawn, surface_point
+from nau_py.raytrace.kernels.core.vec import dot, from_frame, make_frame, reflect
+from nau_py.raytrace.kernels.geometry.surface import (
+    face_forward,
+    keep_above,
+    locate_point,
+    offset_origin,
+)
 from nau_py.raytrace.kernels.intersect.embree import INFINITE
-from nau_py.raytrace.kernels.shading.bsdf import SMOOTH, albedo, fresnel, ggx, refracted
-from nau_py.raytrace.kernels.shading.direct import HIT_DIMENSIONS, banded
+from nau_py.raytrace.kernels.shading.bsdf import (
+    SMOOTH,
+    evaluate_fresnel,
+    look_up_albedo,
+    refract,
+    sample_ggx,
+)
+from nau_py.raytrace.kernels.shading.direct import HIT_DIMENSIONS, select_band
 from nau_py.raytrace.kernels.shading.lights import INVERSE_PI
 
 SPLIT_DEPTH = 4
@@ -45,23 +56,25 @@ FIRST, SECOND, THIRD, FOURTH = 0, 1, 2, 3
 
 
 @inner
-def dimension(path: Any, which: int) -> np.uint32:
+def hit_dimension(path: Any, which: int) -> np.uint32:
     return np.uint32(HIT_DIMENSIONS * path.depth + which)
 
 
 @inner
-def tint(path: Any, colour: V3) -> float:
+def scale_weight(path: Any, colour: V3) -> float:
     """Multiply the weight; returns its largest component."""
-    w, c = weight_of(path), banded(path, colour)
+    w, c = weight_of(path), select_band(path, colour)
     x, y, z = w[0] * c[0], w[1] * c[1], w[2] * c[2]
     set_weight(path, (x, y, z, w[3]))
     return max(abs(x), abs(y), abs(z))
 
 
 @inner
-def leave(path: Any, position: V3, face: V3, bound: float, direction: V3, kind: int) -> None:
+def leave_surface(
+    path: Any, position: V3, face: V3, bound: float, direction: V3, kind: int
+) -> None:
     """Send the path on from a surface along the unit ``direction``."""
-    set_origin(path, spawn(position, face, bound, direction))
+    set_origin(path, offset_origin(position, face, bound, direction))
     set_heading(path, direction)
     path.tmax = INFINITE
     path.travelled = 0.0
@@ -72,10 +85,10 @@ def leave(path: Any, position: V3, face: V3, bound: float, direction: V3, kind: 
 
 
 @inner
-def pass_through(scene: Any, path: Any) -> None:
+def pass_hit(scene: Any, path: Any) -> None:
     """Send the path on behind an ignored hit, in the same direction."""
-    p, n, bound = surface_point(scene, int(path.triangle), float(path.u), float(path.v))
-    set_origin(path, spawn(p, n, bound, heading_of(path)))
+    p, n, bound = locate_point(scene, int(path.triangle), float(path.u), float(path.v))
+    set_origin(path, offset_origin(p, n, bound, heading_of(path)))
     path.tmax = max(path.tmax - path.t, np.float32(0.0))
     path.travelled += path.t
     path.layers += 1
@@ -83,26 +96,26 @@ def pass_through(scene: Any, path: Any) -> None:
 
 
 @inner
-def worth(scene: Any, throughput: float) -> bool:
+def is_significant(scene: Any, throughput: float) -> bool:
     """Whether a specular chain goes on with so much weight."""
     return throughput > 0.0 and throughput >= scene.negligible
 
 
 @inner
-def mirror(
+def sample_mirror(
     scene: Any, path: Any, position: V3, face: V3, bound: float, normal: V3, specular: V3
 ) -> bool:
     """SPECULAR times the mirror direction. Returns whether the path goes on."""
-    going = worth(scene, tint(path, specular))
+    going = is_significant(scene, scale_weight(path, specular))
     d = heading_of(path)
-    direction = kept_above(reflected(d, normal), facing(face, d))
+    direction = keep_above(reflect(d, normal), face_forward(face, d))
     path.pdf = 0.0
-    leave(path, position, face, bound, direction, REFLECTION)
+    leave_surface(path, position, face, bound, direction, REFLECTION)
     return going
 
 
 @inner
-def glossy(
+def sample_glossy(
     scene: Any,
     path: Any,
     position: V3,
@@ -119,61 +132,61 @@ def glossy(
     roughness = min(max(float(material.roughness), 0.0), 1.0)
     alpha = roughness * roughness
     if alpha <= SMOOTH:
-        return mirror(scene, path, position, face, bound, normal, specular)
-    s, t = basis(normal)
+        return sample_mirror(scene, path, position, face, bound, normal, specular)
+    s, t = make_frame(normal)
     d = heading_of(path)
     w = (-dot(d, s), -dot(d, t), max(-dot(d, normal), 1e-4))
-    x, y = sobol2(scene.seed, path.pixel, path.sample, dimension(path, FIRST))
-    out, weight = ggx(w, alpha, x, y)
-    kept = albedo(scene.albedo, roughness, w[2])
+    x, y = sample_2d(scene.seed, path.pixel, path.sample, hit_dimension(path, FIRST))
+    out, weight = sample_ggx(w, alpha, x, y)
+    kept = look_up_albedo(scene.albedo, roughness, w[2])
     lost = (1.0 - kept) / kept
     colour = (
         specular[0] * weight * (1.0 + specular[0] * lost),
         specular[1] * weight * (1.0 + specular[1] * lost),
         specular[2] * weight * (1.0 + specular[2] * lost),
     )
-    direction = in_frame(s, t, normal, out[0], out[1], out[2])
-    going = weight > 0.0 and worth(scene, tint(path, colour))
-    if dot(direction, facing(face, d)) <= 0.0:
+    direction = from_frame(s, t, normal, out[0], out[1], out[2])
+    going = weight > 0.0 and is_significant(scene, scale_weight(path, colour))
+    if dot(direction, face_forward(face, d)) <= 0.0:
         going = False
     path.pdf = 0.0
-    leave(path, position, face, bound, direction, REFLECTION)
+    leave_surface(path, position, face, bound, direction, REFLECTION)
     return going
 
 
 @inner
-def bounce(
+def sample_diffuse(
     scene: Any, path: Any, position: V3, face: V3, bound: float, normal: V3, colour: V3
 ) -> bool:
     """A cosine-weighted direction; deep paths end by Russian roulette."""
     d = heading_of(path)
-    largest = tint(path, colour)
+    largest = scale_weight(path, colour)
     if not largest > 0.0:
         return False
     if path.depth >= ROULETTE_DEPTH:
         survival = min(max(largest, 0.05), 0.95)
-        chance = sobol2(scene.seed, path.pixel, path.sample, dimension(path, THIRD))[1]
+        chance = sample_2d(scene.seed, path.pixel, path.sample, hit_dimension(path, THIRD))[1]
         if chance >= survival:
             return False
         more = 1.0 / survival
-        tint(path, (more, more, more))
-    s, t = basis(normal)
-    x, y = sobol2(scene.seed, path.pixel, path.sample, dimension(path, FIRST))
-    out = cosine_hemisphere(x, y)
-    direction = in_frame(s, t, normal, out[0], out[1], out[2])
-    if not (dot(direction, facing(face, d)) > 0.0 and out[2] > 0.0):
+        scale_weight(path, (more, more, more))
+    s, t = make_frame(normal)
+    x, y = sample_2d(scene.seed, path.pixel, path.sample, hit_dimension(path, FIRST))
+    out = sample_hemisphere(x, y)
+    direction = from_frame(s, t, normal, out[0], out[1], out[2])
+    if not (dot(direction, face_forward(face, d)) > 0.0 and out[2] > 0.0):
         return False
     path.pdf = out[2] * INVERSE_PI
     path.scattered = 1
-    leave(path, position, face, bound, direction, INDIRECT)
+    leave_surface(path, position, face, bound, direction, INDIRECT)
     return True
 
 
 @inner
-def reradiate(scene: Any, path: Any, material: Any, albedo: V3) -> V3:
+def sample_fluorescence(scene: Any, path: Any, material: Any, albedo: V3) -> V3:
     """Fluorescence: choose the band whose light is followed, and weigh the path accordingly.
 
-    The re-radiation matrix is diag(albedo) + FLUORESCENCE. Returns the colour for ``tint``.
+    The re-radiation matrix is diag(albedo) + FLUORESCENCE. Returns the colour for ``scale_weight``.
     """
     matrix = reradiation_of(material)
     if path.band >= 0:
@@ -193,7 +206,7 @@ def reradiate(scene: Any, path: Any, material: Any, albedo: V3) -> V3:
         total = row[0] + row[1] + row[2]
     if not total > 0.0:
         return (0.0, 0.0, 0.0)
-    x, _ = sobol2(scene.seed, path.pixel, path.sample, dimension(path, FOURTH))
+    x, _ = sample_2d(scene.seed, path.pixel, path.sample, hit_dimension(path, FOURTH))
     chosen = 0
     if x * total >= row[0]:
         chosen = 1
@@ -206,7 +219,7 @@ def reradiate(scene: Any, path: Any, material: Any, albedo: V3) -> V3:
         scale = row[chosen] / probability
         path.band = chosen
         return (scale, scale, scale)
-    tint(
+    scale_weight(
         path,
         (
             (matrix[chosen] + (albedo[0] if chosen == 0 else 0.0)) / probability,
@@ -219,7 +232,7 @@ def reradiate(scene: Any, path: Any, material: Any, albedo: V3) -> V3:
 
 
 @inner
-def strongest(scene: Any, path: Any, without: int) -> int:
+def find_medium(scene: Any, path: Any, without: int) -> int:
     """The medium that counts: the highest PRIORITY of those that contain the path; -1: vacuum.
 
     One entry of the medium ``without`` is left out.
@@ -239,14 +252,14 @@ def strongest(scene: Any, path: Any, without: int) -> int:
 
 
 @inner
-def absorb(scene: Any, path: Any) -> None:
+def apply_absorption(scene: Any, path: Any) -> None:
     """Beer and Lambert over the segment just traced: exp(-ABSORPTION · distance)."""
-    medium = strongest(scene, path, -1)
+    medium = find_medium(scene, path, -1)
     if medium < 0:
         return
     a = absorption_of(material_at(scene.materials, medium))
     t = float(path.t)
-    tint(path, (exp(-a[0] * t), exp(-a[1] * t), exp(-a[2] * t)))
+    scale_weight(path, (exp(-a[0] * t), exp(-a[1] * t), exp(-a[2] * t)))
 
 
 @inner
@@ -264,12 +277,12 @@ def replace_medium(path: Any, old: int, new: int) -> None:
 
 
 @inner
-def _index(scene: Any, medium: int) -> float:
+def _refractive_index(scene: Any, medium: int) -> float:
     return float(material_at(scene.materials, medium).index) if medium >= 0 else 1.0
 
 
 @inner
-def dielectric(
+def sample_dielectric(
     scene: Any,
     tile: Any,
     path: Any,
@@ -288,49 +301,49 @@ def dielectric(
     """
     d = heading_of(path)
     entering = dot(face, d) < 0.0
-    now = strongest(scene, path, -1)
+    now = find_medium(scene, path, -1)
     if entering:
         false_hit = now >= 0 and (
             material_at(scene.materials, now).priority
             > material_at(scene.materials, owner).priority
         )
-        before, behind_index = _index(scene, now), _index(scene, owner)
+        before, behind_index = _refractive_index(scene, now), _refractive_index(scene, owner)
     else:
-        rest = strongest(scene, path, owner)
+        rest = find_medium(scene, path, owner)
         false_hit = now >= 0 and now != owner
-        before, behind_index = _index(scene, owner), _index(scene, rest)
+        before, behind_index = _refractive_index(scene, owner), _refractive_index(scene, rest)
     if false_hit:
         if entering:
             replace_medium(path, -1, owner)
         else:
             replace_medium(path, owner, -1)
-        pass_through(scene, path)
+        pass_hit(scene, path)
         return True
     eta = behind_index / before
     cosine = min(abs(dot(normal, d)), 1.0)
-    share, behind = fresnel(cosine, eta)
+    share, behind = evaluate_fresnel(cosine, eta)
     path.pdf = 0.0
-    away = kept_above(reflected(d, normal), facing(face, d))
+    away = keep_above(reflect(d, normal), face_forward(face, d))
     if share >= 1.0:
-        leave(path, position, face, bound, away, REFLECTION)
+        leave_surface(path, position, face, bound, away, REFLECTION)
         return True
-    through = refracted(d, normal, cosine, behind, eta)
+    through = refract(d, normal, cosine, behind, eta)
     if path.depth <= SPLIT_DEPTH and tile.top < STACK:
         other = path_at(tile.stack, tile.top)
         copy_path(other, path)
-        if worth(scene, tint(other, (share, share, share))):
-            leave(other, position, face, bound, away, REFLECTION)
+        if is_significant(scene, scale_weight(other, (share, share, share))):
+            leave_surface(other, position, face, bound, away, REFLECTION)
             tile.top += 1
-        going = worth(scene, tint(path, (1.0 - share, 1.0 - share, 1.0 - share)))
+        going = is_significant(scene, scale_weight(path, (1.0 - share, 1.0 - share, 1.0 - share)))
     else:
-        x, _ = sobol2(scene.seed, path.pixel, path.sample, dimension(path, THIRD))
+        x, _ = sample_2d(scene.seed, path.pixel, path.sample, hit_dimension(path, THIRD))
         if x < share:
-            leave(path, position, face, bound, away, REFLECTION)
+            leave_surface(path, position, face, bound, away, REFLECTION)
             return True
         going = True
     if entering:
         replace_medium(path, -1, owner)
     else:
         replace_medium(path, owner, -1)
-    leave(path, position, face, bound, through, REFRACTION)
+    leave_surface(path, position, face, bound, through, REFRACTION)
     return going
