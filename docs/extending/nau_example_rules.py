@@ -4,22 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from nau_py.diagnostics.catalogue import WARNING, rule
 from nau_py.diagnostics.diagnostic import Change, Diagnostic, Fix, Part
-from nau_py.rules.rule import WARNING, Facts, check, rule
+from nau_py.rules.registry import LintContext, check
 
 Z001 = rule(
     "Z001",
     WARNING,
     "Camera without a capital letter",
-    "In this house cameras are proper names.",
+    "The names of cameras are proper names.",
     "<camera name='eye'/>",
     "<camera name='Eye'/>",
 )
 
 
 @check
-def capitals(facts: Facts) -> Iterator[Diagnostic]:
-    for camera in facts.project.assets.cameras:
+def capitals(context: LintContext) -> Iterator[Diagnostic]:
+    for camera in context.project.assets.cameras:
         name = camera.name or ""
         if name[:1].islower():
             where, better = camera.where("name"), name[:1].upper() + name[1:]

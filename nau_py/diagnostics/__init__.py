@@ -1,1 +1,4 @@
-"""Findings about a project: where, how bad, what to do; and their reporters. Knows no project."""
+"""Findings: place, severity, message, fixes; the catalogue of rules; reporters.
+
+Imports no other room and knows no project.
+"""

@@ -7,10 +7,9 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from nau_py.diagnostics.catalogue import RULES
 from nau_py.diagnostics.diagnostic import Diagnostic, Severity
 from nau_py.diagnostics.location import Location
-from nau_py.rules.loading import load_rules
-from nau_py.rules.rule import RULES
 
 _TAB = 4
 
@@ -93,21 +92,24 @@ def _sarif_location(location: Location) -> dict[str, Any]:
     return {"physicalLocation": physical}
 
 
+def _sarif_rule(id_: str) -> dict[str, Any]:
+    """Describe a rule. A plug-in may emit findings of a rule that it did not register."""
+    rule = RULES.get(id_)
+    if rule is None:
+        return {"id": id_}
+    return {
+        "id": rule.id,
+        "name": "".join(w for w in rule.title.title() if w.isalnum()),
+        "shortDescription": {"text": rule.title},
+        "fullDescription": {"text": rule.explanation},
+        "defaultConfiguration": {"level": str(rule.severity)},
+    }
+
+
 def to_sarif(diagnostics: Iterable[Diagnostic], version: str) -> str:
-    """SARIF 2.1.0 (OASIS), with the rules that have findings."""
-    load_rules()
+    """Write SARIF 2.1.0 (OASIS), with the rules that have findings."""
     listed = list(diagnostics)
     used = sorted({d.rule for d in listed})
-    rules = [
-        {
-            "id": RULES[id_].id,
-            "name": "".join(w for w in RULES[id_].title.title() if w.isalnum()),
-            "shortDescription": {"text": RULES[id_].title},
-            "fullDescription": {"text": RULES[id_].explanation},
-            "defaultConfiguration": {"level": str(RULES[id_].severity)},
-        }
-        for id_ in used
-    ]
     results = []
     for d in listed:
         result: dict[str, Any] = {
@@ -128,7 +130,7 @@ def to_sarif(diagnostics: Iterable[Diagnostic], version: str) -> str:
         "name": "nau-lint",
         "version": version,
         "informationUri": "https://pypi.org/project/nau_py/",
-        "rules": rules,
+        "rules": [_sarif_rule(id_) for id_ in used],
     }
     document = {
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.model.accuracy import Accuracy, Knob
 from nau_py.model.effects import wanted
 from nau_py.model.knob import NothingToTurn, subject
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
-from nau_py.rules.rule import ERROR, WARNING, Facts, check, rule
+from nau_py.rules.registry import LintContext, check
 
 A001 = rule(
     "A001",
@@ -73,10 +74,10 @@ def _pipeline(project: Project, node: Accuracy) -> Pipeline | None:
 
 
 @check
-def accuracy(facts: Facts) -> Iterator[Diagnostic]:
+def accuracy(context: LintContext) -> Iterator[Diagnostic]:
     """Knobs and ladders of ``<accuracy>``."""
-    node = facts.project.file.accuracy
-    pipeline = _pipeline(facts.project, node) if node is not None else None
+    node = context.project.file.accuracy
+    pipeline = _pipeline(context.project, node) if node is not None else None
     if node is None or pipeline is None:
         return
     most: int = 0
@@ -91,7 +92,7 @@ def accuracy(facts: Facts) -> Iterator[Diagnostic]:
             )
         seen[knob.name] = knob
         try:
-            turned = subject(facts.project, pipeline.passes, knob.name)
+            turned = subject(context.project, pipeline.passes, knob.name)
             values = turned.ladder(knob.values or "")
         except LookupError as problem:
             yield A001.at(knob.where("name"), str(problem.args[0]))
@@ -112,9 +113,9 @@ def accuracy(facts: Facts) -> Iterator[Diagnostic]:
 
 
 @check
-def effects(facts: Facts) -> Iterator[Diagnostic]:
+def effects(context: LintContext) -> Iterator[Diagnostic]:
     """Names in ``<effects>``."""
-    node = facts.project.file.effects
+    node = context.project.file.effects
     if node is None or node.simulate is None:
         return
     try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from nau_py.diagnostics.catalogue import ERROR, NOTE, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.graph.plan import Plan, make_plan
 from nau_py.graph.resource import Resource
@@ -13,7 +14,7 @@ from nau_py.model.pass_classes import RAYTRACE_CLASSES
 from nau_py.model.passes import Pass
 from nau_py.model.raytrace import RaytracePass
 from nau_py.rules.passes import target_size
-from nau_py.rules.rule import ERROR, NOTE, WARNING, Facts, check, rule
+from nau_py.rules.registry import LintContext, check
 
 D001 = rule(
     "D001",
@@ -71,16 +72,16 @@ def target_textures(project: Project, pass_: Pass) -> list[str]:
     return [f"{owner[0]}::{name}" for name in owner[1].texture_names] if owner else []
 
 
-def _plans(facts: Facts) -> Iterator[Plan]:
-    for pipeline in facts.project.pipelines:
-        yield make_plan(facts.project, pipeline, facts.contracts)
+def _plans(context: LintContext) -> Iterator[Plan]:
+    for pipeline in context.project.pipelines:
+        yield make_plan(context.project, pipeline, context.contracts)
 
 
 @check
-def flow(facts: Facts) -> Iterator[Diagnostic]:
+def flow(context: LintContext) -> Iterator[Diagnostic]:
     """Reads before writes, reads without writes, passes without effect, feedback."""
-    project = facts.project
-    for plan in _plans(facts):
+    project = context.project
+    for plan in _plans(context):
         graph = plan.graph
         for index, resource in graph.history:
             if resource in graph.accesses[index].writes:
@@ -110,7 +111,7 @@ def flow(facts: Facts) -> Iterator[Diagnostic]:
                         f"cycle: pass '{pass_.name}' samples {resource} while drawing into it",
                     )
         for step in plan.steps:
-            if not step.run and step.pass_.pass_class in facts.contracts:
+            if not step.run and step.pass_.pass_class in context.contracts:
                 yield D003.at(
                     step.pass_.location,
                     f"pass '{step.name}' of pipeline '{plan.pipeline}' is left out: {step.reason}",
@@ -122,9 +123,9 @@ def _is_target(project: Project, resource: Resource) -> bool:
 
 
 @check
-def raytrace_inputs(facts: Facts) -> Iterator[Diagnostic]:
+def raytrace_inputs(context: LintContext) -> Iterator[Diagnostic]:
     """Sizes and formats of what raytrace passes read and write."""
-    project = facts.project
+    project = context.project
     for pipeline in project.pipelines:
         sized = {
             name: p.viewport.name if p.viewport else None

@@ -6,12 +6,13 @@ import os
 from collections.abc import Iterator
 from pathlib import Path
 
+from nau_py.diagnostics.catalogue import ERROR, NOTE, WARNING, rule
 from nau_py.diagnostics.diagnostic import Change, Diagnostic, Fix, Part, listing
 from nau_py.diagnostics.location import Location
 from nau_py.model.node import Attr, file_key
 from nau_py.model.walk import nodes
 from nau_py.process.paths import resolve, similar
-from nau_py.rules.rule import ERROR, NOTE, WARNING, Facts, check, rule
+from nau_py.rules.registry import LintContext, check
 
 F001 = rule(
     "F001",
@@ -49,9 +50,9 @@ _SOFT = {"texture": F004}
 
 
 @check
-def files(facts: Facts) -> Iterator[Diagnostic]:
+def files(context: LintContext) -> Iterator[Diagnostic]:
     """Every attribute that is a path, but those of ray programs (T)."""
-    for node in nodes(facts.project):
+    for node in nodes(context.project):
         for name, marker in node.markers().items():
             if not isinstance(marker, Attr) or not marker.file or marker.file == "program":
                 continue

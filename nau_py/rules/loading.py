@@ -1,24 +1,23 @@
-"""The rules, one family a file, and those of plug-ins."""
+"""Registration of all rules and checks: one module a family, and those of plug-ins."""
 
-from nau_py.plugins import RULES as PLUGINS
-from nau_py.plugins import loaded
+from __future__ import annotations
+
+import nau_py.diagnostics.run_rules
+import nau_py.rules.accuracy
+import nau_py.rules.dataflow
+import nau_py.rules.files
+import nau_py.rules.names
+import nau_py.rules.numerics
+import nau_py.rules.passes
+import nau_py.rules.plugins
+import nau_py.rules.raytrace
+import nau_py.rules.references
+import nau_py.rules.syntax
+import nau_py.rules.unsupported
+import nau_py.rules.values  # noqa: F401
+from nau_py.plugins import RULES, loaded
 
 
 def load_rules() -> None:
-    """Import every family, so that its rules are registered."""
-    from nau_py.rules import (  # noqa: F401
-        accuracy,
-        dataflow,
-        files,
-        names,
-        numerics,
-        passes,
-        plugins,
-        raytrace,
-        references,
-        running,
-        syntax,
-        values,
-    )
-
-    loaded(PLUGINS)
+    """Load the rules of plug-ins. Importing this module registers the built-in ones."""
+    loaded(RULES)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from nau_py.diagnostics.catalogue import ERROR, WARNING, Rule, rule
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.model.library import MaterialLibrary
 from nau_py.model.node import Node
 from nau_py.model.walk import own_libraries
-from nau_py.rules.rule import ERROR, WARNING, Facts, Rule, check, rule
+from nau_py.rules.registry import LintContext, check
 
 N001 = rule(
     "N001",
@@ -45,9 +46,9 @@ def _duplicates(kind: str, nodes: Iterable[Node], found: Rule) -> Iterator[Diagn
 
 
 @check
-def project_names(facts: Facts) -> Iterator[Diagnostic]:
+def project_names(context: LintContext) -> Iterator[Diagnostic]:
     """Cameras, viewports, pipelines; lights, scenes and passes, which Nau merges."""
-    project = facts.project
+    project = context.project
     assets = project.assets
     yield from _duplicates("camera", assets.cameras, N001)
     yield from _duplicates("viewport", assets.viewports, N001)
@@ -70,9 +71,9 @@ def _attachments(libraries: list[MaterialLibrary]) -> list[Node]:
 
 
 @check
-def library_names(facts: Facts) -> Iterator[Diagnostic]:
+def library_names(context: LintContext) -> Iterator[Diagnostic]:
     """Everything in a library; libraries of one name share a name space."""
-    libraries = own_libraries(facts.project)
+    libraries = own_libraries(context.project)
     for name in dict.fromkeys(lib.name for lib in libraries):
         same = [lib for lib in libraries if lib.name == name]
         kinds: dict[str, list[Node]] = {

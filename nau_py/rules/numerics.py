@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import isfinite
 
+from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.diagnostics.location import Location
 from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Setting
-from nau_py.rules.rule import ERROR, WARNING, Facts, check, rule
+from nau_py.rules.registry import LintContext, check
 
 Q001 = rule(
     "Q001",
@@ -81,9 +82,9 @@ def _numbers(project: Project, setting: Setting) -> list[float]:
 
 
 @check
-def cameras(facts: Facts) -> Iterator[Diagnostic]:
+def cameras(context: LintContext) -> Iterator[Diagnostic]:
     """Near planes and lenses."""
-    project = facts.project
+    project = context.project
     for camera in project.assets.cameras:
         nodes: list[Configured | None] = [camera, camera.projection]
         kind, _ = _setting(nodes, "TYPE")
@@ -109,9 +110,9 @@ def cameras(facts: Facts) -> Iterator[Diagnostic]:
 
 
 @check
-def lights(facts: Facts) -> Iterator[Diagnostic]:
+def lights(context: LintContext) -> Iterator[Diagnostic]:
     """Colours of lights, and shapes without size."""
-    project = facts.project
+    project = context.project
     for light in project.assets.lights:
         label = f"light '{light.name}'"
         yield from _sound(project, light, label, ("COLOR", "AMBIENT"))
@@ -139,9 +140,9 @@ def lights(facts: Facts) -> Iterator[Diagnostic]:
 
 
 @check
-def materials(facts: Facts) -> Iterator[Diagnostic]:
+def materials(context: LintContext) -> Iterator[Diagnostic]:
     """Colours of library materials, and what fluorescence gives."""
-    project = facts.project
+    project = context.project
     names = [
         "DIFFUSE",
         "SPECULAR",

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
 from nau_py.model.linked import Project
 from nau_py.model.mask import MaskPass, PropertySelector
 from nau_py.model.pass_classes import PASS_CLASSES, PLUGIN_CLASSES, ComputePass
 from nau_py.model.target import CubeMapAttachment, RenderTarget
-from nau_py.rules.rule import ERROR, WARNING, Facts, check, rule
+from nau_py.rules.registry import LintContext, check
 
 MASK_FORMATS = ["RGBA32F", "RGBA16F"]
 
@@ -67,14 +68,14 @@ P006 = rule(
 
 
 @check
-def classes(facts: Facts) -> Iterator[Diagnostic]:
+def classes(context: LintContext) -> Iterator[Diagnostic]:
     """Pass classes that do not exist, or not here."""
-    for pipeline in facts.project.pipelines:
+    for pipeline in context.project.pipelines:
         for pass_ in pipeline.passes:
             name = pass_.pass_class
-            if name in facts.contracts:
+            if name in context.contracts:
                 continue
-            known = list(facts.contracts)
+            known = list(context.contracts)
             if name in PASS_CLASSES or name in PLUGIN_CLASSES:
                 yield P002.at(
                     pass_.where("class"),
@@ -91,9 +92,9 @@ def classes(facts: Facts) -> Iterator[Diagnostic]:
 
 
 @check
-def needs(facts: Facts) -> Iterator[Diagnostic]:
+def needs(context: LintContext) -> Iterator[Diagnostic]:
     """What compute and depthmap passes cannot do without."""
-    for pipeline in facts.project.pipelines:
+    for pipeline in context.project.pipelines:
         for pass_ in pipeline.passes:
             if isinstance(pass_, ComputePass):
                 yield from _compute(pass_)
@@ -105,7 +106,7 @@ def needs(facts: Facts) -> Iterator[Diagnostic]:
                         pass_.location, f"depthmap pass '{pass_.name}' needs a <renderTarget>"
                     )
             elif isinstance(pass_, MaskPass):
-                yield from _mask(facts.project, pass_)
+                yield from _mask(context.project, pass_)
 
 
 def _mask(project: Project, pass_: MaskPass) -> Iterator[Diagnostic]:
@@ -177,18 +178,18 @@ def _kinds(project: Project, target: RenderTarget) -> Iterator[Diagnostic]:
 
 
 @check
-def targets(facts: Facts) -> Iterator[Diagnostic]:
+def targets(context: LintContext) -> Iterator[Diagnostic]:
     """Render targets that cannot be made."""
-    for library in facts.project.libraries[1:]:
+    for library in context.project.libraries[1:]:
         for target in library.renderTargets:
-            width, height = target_size(facts.project, target)
+            width, height = target_size(context.project, target)
             if width < 1 or height < 1:
                 yield P004.at(
                     target.location,
                     f"render target '{target.name}': SIZE is {width} x {height}; "
                     "both must be above 0",
                 )
-            yield from _kinds(facts.project, target)
+            yield from _kinds(context.project, target)
             if len(target.colors) > 8:
                 yield P005.at(
                     target.location,

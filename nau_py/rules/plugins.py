@@ -6,13 +6,14 @@ from collections.abc import Iterator
 
 import nau_py.plugins as plugins
 from nau_py.diagnostics.diagnostic import Diagnostic
-from nau_py.rules.rule import RULES, Facts, check
+from nau_py.diagnostics.run_rules import E005
+from nau_py.rules.registry import LintContext, check
 
 
 @check
-def plug_ins(facts: Facts) -> Iterator[Diagnostic]:
-    """Those of passes and rules are loaded by now, those of readers when a model asks."""
+def plug_ins(context: LintContext) -> Iterator[Diagnostic]:
+    """Plug-ins of passes and rules are loaded before lint; the others are loaded here."""
     plugins.loaded(plugins.READERS)
     plugins.program_files()
-    for said in plugins.failures():
-        yield RULES["E005"].at(facts.project.file.location, said)
+    for message in plugins.failures():
+        yield E005.at(context.project.file.location, message)

@@ -6,6 +6,7 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
+from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
 from nau_py.graph.dependencies import build
 from nau_py.graph.resource import Resource
@@ -18,7 +19,7 @@ from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
 from nau_py.raytrace.programs.description import EXCEPTION, RAY_GENERATION
 from nau_py.raytrace.programs.source import COMPILED, launches_ptx, stand_in, strip_decoration
 from nau_py.raytrace.ptx.exports import exports, kind_of
-from nau_py.rules.rule import ERROR, WARNING, Facts, check, rule
+from nau_py.rules.registry import LintContext, check
 
 T001 = rule(
     "T001",
@@ -206,10 +207,10 @@ def raytrace_passes(project: Project) -> list[tuple[str, RaytracePass]]:
 
 
 @check
-def one_pass(facts: Facts) -> Iterator[Diagnostic]:
+def one_pass(context: LintContext) -> Iterator[Diagnostic]:
     """One raytrace pass a project."""
-    found = raytrace_passes(facts.project)
-    if len(found) < 2 or facts.project.file.raytracePasses == "many":
+    found = raytrace_passes(context.project)
+    if len(found) < 2 or context.project.file.raytracePasses == "many":
         return
     first_pipeline, first = found[0]
     for pipeline, pass_ in found[1:]:
@@ -223,11 +224,11 @@ def one_pass(facts: Facts) -> Iterator[Diagnostic]:
 
 
 @check
-def masks(facts: Facts) -> Iterator[Diagnostic]:
+def masks(context: LintContext) -> Iterator[Diagnostic]:
     """The mask must be written by an earlier pass."""
-    project = facts.project
+    project = context.project
     for pipeline in project.pipelines:
-        graph = build(project, pipeline, facts.contracts)
+        graph = build(project, pipeline, context.contracts)
         for index, pass_ in enumerate(graph.passes):
             if not isinstance(pass_, RaytracePass) or pass_.mask is None:
                 continue
@@ -248,9 +249,9 @@ def masks(facts: Facts) -> Iterator[Diagnostic]:
 
 
 @check
-def completeness(facts: Facts) -> Iterator[Diagnostic]:
+def completeness(context: LintContext) -> Iterator[Diagnostic]:
     """Entry point, render target, ray types."""
-    for _, pass_ in raytrace_passes(facts.project):
+    for _, pass_ in raytrace_passes(context.project):
         if pass_.rtEntryPoint is None or pass_.rtEntryPoint.rayGen is None:
             yield T008.at(
                 pass_.location, f"raytrace pass '{pass_.name}' has no ray generation program"
@@ -259,7 +260,7 @@ def completeness(facts: Facts) -> Iterator[Diagnostic]:
             yield T008.at(pass_.location, f"raytrace pass '{pass_.name}' has no <renderTarget>")
         if not pass_.ray_types:
             yield T008.at(pass_.location, f"raytrace pass '{pass_.name}' has no ray type")
-        compiled = launches_ptx(pass_, facts.project.folder)
+        compiled = launches_ptx(pass_, context.project.folder)
         for output in pass_.rtOutput if not compiled else []:
             yield T009.at(
                 output.location,
@@ -278,13 +279,13 @@ def completeness(facts: Facts) -> Iterator[Diagnostic]:
 
 
 @check
-def programs(facts: Facts) -> Iterator[Diagnostic]:
+def programs(context: LintContext) -> Iterator[Diagnostic]:
     """Every program's file and procedure, without executing anything."""
-    for _, pass_ in raytrace_passes(facts.project):
-        compiled = launches_ptx(pass_, facts.project.folder)
+    for _, pass_ in raytrace_passes(context.project):
+        compiled = launches_ptx(pass_, context.project.folder)
         for program, kind, whose in used_programs(pass_):
             label = ", ".join([f"pass '{pass_.name}'", *whose])
-            yield from _program(facts.project, program, kind, label, compiled)
+            yield from _program(context.project, program, kind, label, compiled)
 
 
 def used_programs(pass_: RaytracePass) -> Iterator[tuple[Program, str, list[str]]]:
@@ -310,10 +311,10 @@ def _is_compiled(program: Program | None) -> bool:
 
 
 @check
-def compiled_programs(facts: Facts) -> Iterator[Diagnostic]:
+def compiled_programs(context: LintContext) -> Iterator[Diagnostic]:
     """What the compiled files of a pass export, where they are launched or nothing stands in."""
-    folder = facts.project.folder
-    for _, pass_ in raytrace_passes(facts.project):
+    folder = context.project.folder
+    for _, pass_ in raytrace_passes(context.project):
         uses: dict[str, list[tuple[Program, str, list[str]]]] = {}
         for program, kind, whose in used_programs(pass_):
             if program.file and program.proc and _is_compiled(program):
@@ -326,12 +327,12 @@ def compiled_programs(facts: Facts) -> Iterator[Diagnostic]:
 
 
 @check
-def compiled_code(facts: Facts) -> Iterator[Diagnostic]:
+def compiled_code(context: LintContext) -> Iterator[Diagnostic]:
     """What of compiled programs cannot be run, by the pass class that runs them."""
-    for _, pass_ in raytrace_passes(facts.project):
-        faults = getattr(facts.contracts.get(pass_.pass_class), "faults", None)
+    for _, pass_ in raytrace_passes(context.project):
+        faults = getattr(context.contracts.get(pass_.pass_class), "faults", None)
         if faults is not None:
-            yield from faults(facts.project, pass_)
+            yield from faults(context.project, pass_)
 
 
 def _exports(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from nau_py.diagnostics.catalogue import ERROR, NOTE, WARNING, Rule, rule
 from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
 from nau_py.diagnostics.location import Location
 from nau_py.model.attributes import OBJECT_TYPES
@@ -23,7 +24,7 @@ from nau_py.model.references import (
     qualified_reference,
 )
 from nau_py.model.walk import nodes
-from nau_py.rules.rule import ERROR, NOTE, WARNING, Facts, Rule, check, rule
+from nau_py.rules.registry import LintContext, check
 
 
 def _reference(number: int, kind: str, bad: str, good: str) -> Rule:
@@ -108,18 +109,18 @@ class _Names:
 
 
 @check
-def references(facts: Facts) -> Iterator[Diagnostic]:
+def references(context: LintContext) -> Iterator[Diagnostic]:
     """Every attribute that names something."""
-    names = _Names(facts.project)
-    for node, library in owned_nodes(facts.project):
+    names = _Names(context.project)
+    for node, library in owned_nodes(context.project):
         for name, marker in node.markers().items():
             if isinstance(marker, Attr) and marker.ref:
                 value = getattr(node, name)
                 if value is not None:
-                    yield from _attribute(facts, names, node, library, name, marker, value)
+                    yield from _attribute(context, names, node, library, name, marker, value)
             elif isinstance(marker, Settings):
                 for tag, setting in getattr(node, name).items():
-                    attribute = facts.project.registry[marker.type].get(tag)
+                    attribute = context.project.registry[marker.type].get(tag)
                     if attribute is not None and attribute.reference:
                         yield from _name(
                             names,
@@ -142,7 +143,13 @@ def _name(names: _Names, kind: str, value: str, where: Location, what: str) -> I
 
 
 def _attribute(
-    facts: Facts, names: _Names, node: Node, library: str, name: str, marker: Attr, value: str
+    context: LintContext,
+    names: _Names,
+    node: Node,
+    library: str,
+    name: str,
+    marker: Attr,
+    value: str,
 ) -> Iterator[Diagnostic]:
     key = file_key(name, marker)
     where, what = node.where(key), f"attribute '{key}' of <{node.tag}>"
@@ -155,7 +162,7 @@ def _attribute(
         return  # the library is what is undefined
     buffers = names.of("buffer") if kind == "buffer" else ()
     wanted = qualified_reference(node, marker, library, value, buffers)
-    if kind == "material" and wanted.split("::")[0] in pass_libraries(facts.project):
+    if kind == "material" and wanted.split("::")[0] in pass_libraries(context.project):
         return
     known = names.of(kind)
     if wanted in known:
@@ -163,7 +170,7 @@ def _attribute(
     if (
         kind == "material"
         and wanted.startswith(f"{DEFAULT_LIBRARY}::")
-        and (facts.materials is None or value in facts.materials)
+        and (context.materials is None or value in context.materials)
     ):
         return
     home = wanted.split("::")[0]
@@ -178,9 +185,9 @@ def _attribute(
 
 
 @check
-def components(facts: Facts) -> Iterator[Diagnostic]:
+def components(context: LintContext) -> Iterator[Diagnostic]:
     """Types, components and named contexts of uniform and program values."""
-    project = facts.project
+    project = context.project
     names = _Names(project)
     for node in nodes(project):
         if not isinstance(node, ValueOf | RayVariable) or node.type is None:
@@ -197,26 +204,26 @@ def components(facts: Facts) -> Iterator[Diagnostic]:
                 fixes=guess(node.where("component"), node.component, known),
             )
         kind = CONTEXTS.get(node.type)
-        context = node.context
+        object_name = node.context
         if not project.file.tag:
             continue  # a library alone: the project that loads it defines cameras and lights
-        if kind and context not in (None, "CURRENT") and context not in names.of(kind):
+        if kind and object_name not in (None, "CURRENT") and object_name not in names.of(kind):
             known = names.of(kind)
             yield R017.at(
                 node.where("context"),
-                f"context '{context}' is no {kind} of the project; there is "
-                f"{listing(known)}{nearest(str(context), known)}",
-                fixes=guess(node.where("context"), str(context), known),
+                f"context '{object_name}' is no {kind} of the project; there is "
+                f"{listing(known)}{nearest(str(object_name), known)}",
+                fixes=guess(node.where("context"), str(object_name), known),
             )
 
 
 @check
-def patterns(facts: Facts) -> Iterator[Diagnostic]:
+def patterns(context: LintContext) -> Iterator[Diagnostic]:
     """Maps whose pattern matches nothing, where the names of models are known."""
-    if facts.materials is None:
+    if context.materials is None:
         return
-    known = sorted(facts.materials)
-    for pipeline in facts.project.pipelines:
+    known = sorted(context.materials)
+    for pipeline in context.project.pipelines:
         for pass_ in pipeline.passes:
             listed = [(m, "toMaterial", m.toMaterial) for m in pass_.injectionMaps]
             wanted: list[tuple[Node, str, str | None]] = [
@@ -235,10 +242,10 @@ def patterns(facts: Facts) -> Iterator[Diagnostic]:
 
 
 @check
-def same_targets(facts: Facts) -> Iterator[Diagnostic]:
+def same_targets(context: LintContext) -> Iterator[Diagnostic]:
     """``sameas`` of a pass that has no render target."""
     by_name: dict[str | None, Pass] = {}
-    for pipeline in facts.project.pipelines:
+    for pipeline in context.project.pipelines:
         for pass_ in pipeline.passes:
             target: TargetReference | None = pass_.renderTarget
             if target is not None and target.sameas in by_name:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from nau_py.diagnostics.catalogue import ERROR, NOTE, WARNING, rule
 from nau_py.diagnostics.diagnostic import Change, Diagnostic, Fix, Part
 from nau_py.diagnostics.problem import Problem, ProblemKind
-from nau_py.rules.rule import ERROR, NOTE, WARNING, Facts, check, rule
+from nau_py.rules.registry import LintContext, check
 
 X001 = rule(
     "X001",
@@ -115,6 +116,6 @@ def _diagnostic(p: Problem) -> Diagnostic:
 
 
 @check
-def problems(facts: Facts) -> Iterator[Diagnostic]:
+def problems(context: LintContext) -> Iterator[Diagnostic]:
     """Everything that the readers noticed."""
-    yield from (_diagnostic(p) for p in facts.project.problems)
+    yield from (_diagnostic(p) for p in context.project.problems)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
 from nau_py.diagnostics.diagnostic import (
     Change,
     Diagnostic,
@@ -33,7 +34,7 @@ from nau_py.model.raytrace import VERTEX_ATTRIBUTES
 from nau_py.model.scene import BufferGeometry
 from nau_py.model.texture import Texture
 from nau_py.model.walk import nodes
-from nau_py.rules.rule import ERROR, WARNING, Facts, check, rule
+from nau_py.rules.registry import LintContext, check
 from nau_py.syntax.element import Element
 
 V005 = rule(
@@ -165,10 +166,10 @@ def known_attributes(node: Node, project: Project) -> list[str]:
 
 
 @check
-def unknown_things(facts: Facts) -> Iterator[Diagnostic]:
+def unknown_things(context: LintContext) -> Iterator[Diagnostic]:
     """Attributes and elements that the models have no place for."""
-    for node in nodes(facts.project):
-        attributes = known_attributes(node, facts.project)
+    for node in nodes(context.project):
+        attributes = known_attributes(node, context.project)
         for key, value in node.unknown_attributes.items():
             if key in attributes:
                 continue  # its value did not convert: V001 says so
@@ -184,9 +185,9 @@ def unknown_things(facts: Facts) -> Iterator[Diagnostic]:
                 yield S003.at(where, message + " and ignored" + known, fixes=fixes)
         for tag, listed in node.unknown_children.items():
             for child in listed:
-                yield from _unknown_child(facts.project, node, tag, child)
+                yield from _unknown_child(context.project, node, tag, child)
         for wrapper, element in node.partial.items():
-            yield from _left_over(facts.project, node, wrapper, element)
+            yield from _left_over(context.project, node, wrapper, element)
 
 
 def _remove(where: Location, key: str, safe: bool) -> tuple[Fix, ...]:
@@ -246,9 +247,9 @@ def _left_over(
 
 
 @check
-def attribute_values(facts: Facts) -> Iterator[Diagnostic]:
+def attribute_values(context: LintContext) -> Iterator[Diagnostic]:
     """Required attributes, and values of enumerated ones."""
-    for node in nodes(facts.project):
+    for node in nodes(context.project):
         for name, marker in node.markers().items():
             if not isinstance(marker, Attr):
                 continue
@@ -266,7 +267,7 @@ def attribute_values(facts: Facts) -> Iterator[Diagnostic]:
                 )
             elif isinstance(value, str) and marker.constant:
                 yield from _constant(
-                    facts.project, value, f"'{key}' of <{node.tag}>", node.where(key)
+                    context.project, value, f"'{key}' of <{node.tag}>", node.where(key)
                 )
 
 
@@ -282,15 +283,15 @@ def _constant(project: Project, name: str, what: str, where: Location) -> Iterat
 
 
 @check
-def settings(facts: Facts) -> Iterator[Diagnostic]:
+def settings(context: LintContext) -> Iterator[Diagnostic]:
     """Enums, ranges and constants of child tags and inline attributes."""
-    for node in nodes(facts.project):
+    for node in nodes(context.project):
         for name, marker in node.markers().items():
             if isinstance(marker, Settings | Inline):
                 for tag, setting in getattr(node, name).items():
-                    attribute = facts.project.registry[marker.type].get(tag)
+                    attribute = context.project.registry[marker.type].get(tag)
                     if attribute is not None:
-                        yield from _setting(facts.project, node, tag, setting, attribute)
+                        yield from _setting(context.project, node, tag, setting, attribute)
 
 
 def _setting(
@@ -321,8 +322,8 @@ def _setting(
 
 
 @check
-def has_pipelines(facts: Facts) -> Iterator[Diagnostic]:
+def has_pipelines(context: LintContext) -> Iterator[Diagnostic]:
     """A project needs something to run."""
-    project = facts.project
+    project = context.project
     if project.file.name is not None and not project.pipelines:
         yield S005.at(project.file.location, f"project '{project.name}' has no pipeline to run")

@@ -7,9 +7,7 @@ import re
 import pytest
 
 import nau_py
-from nau_py.rules.loading import load_rules
-from nau_py.rules.rule import RULES
-from tests.conftest import PROJECTS, ROOT, Folder
+from tests.conftest import PROJECTS, Folder
 
 LIB = """\
 <materialLib name="L">
@@ -490,20 +488,3 @@ def test_a_pipeline_without_an_end(folder: Folder) -> None:
     message = "has neither frameCount nor testScript, so in mode RUN_ALL 'B' has no turn"
     assert found.pop((True, False)) == [f"pipeline 'A' {message}"]
     assert list(found.values()) == [[], [], []]
-
-
-def test_every_rule_explains_itself() -> None:
-    load_rules()
-    for rule in RULES.values():
-        assert rule.title
-        assert rule.explanation.endswith(".")
-        assert rule.bad
-        assert rule.good
-        assert rule.bad != rule.good
-
-
-def test_the_rules_page_is_up_to_date() -> None:
-    from nau_py.rules.engine import rules_page
-
-    page = ROOT / "docs" / "rules.md"
-    assert page.read_text() == rules_page(), "run scripts/reference"

@@ -1,14 +1,15 @@
-"""The registry of rules: stable ids with what a page about them needs."""
+"""The catalogue of rules: stable ids with the texts that reports and the reference page need.
+
+A rule is registered where its finding is made: beside its check in :mod:`nau_py.rules`, in a
+plug-in, or in :mod:`nau_py.diagnostics.run_rules` for findings that only a run reports.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from nau_py.diagnostics.diagnostic import Diagnostic, Fix, Severity
 from nau_py.diagnostics.location import Location
-from nau_py.graph.contract import Contracts
-from nau_py.model.linked import Project
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,41 +30,19 @@ class Rule:
         related: tuple[tuple[Location, str], ...] = (),
         fixes: tuple[Fix, ...] = (),
     ) -> Diagnostic:
-        """A finding of this rule."""
+        """Make a finding of this rule."""
         return Diagnostic(self.id, self.severity, location, message, related, fixes)
 
 
-@dataclass(frozen=True, slots=True)
-class Facts:
-    """What a check may look at: the project, and the contracts of the pass classes.
-
-    ``materials``: names in the default library, models' included; None where a model's are not
-    known without loading it.
-    """
-
-    project: Project
-    contracts: Contracts
-    materials: frozenset[str] | None = None
-
-
-Check = Callable[[Facts], Iterator[Diagnostic]]
-
 RULES: dict[str, Rule] = {}
-CHECKS: list[Check] = []
+"""Every registered rule by its id."""
+
+ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
 
 
 def rule(id_: str, severity: Severity, title: str, explanation: str, bad: str, good: str) -> Rule:
-    """Register a rule. An id is never used again for something else."""
+    """Register a rule. An id is never reused. Raises ValueError for an id that is taken."""
     if id_ in RULES:
         raise ValueError(f"rule {id_} is registered twice")
     RULES[id_] = Rule(id_, severity, title, explanation, bad, good)
     return RULES[id_]
-
-
-def check(function: Check) -> Check:
-    """Register a function that yields findings."""
-    CHECKS.append(function)
-    return function
-
-
-ERROR, WARNING, NOTE = Severity.ERROR, Severity.WARNING, Severity.NOTE
