@@ -8,8 +8,9 @@ from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_target
-from nau_py.passes.drawing import target_and_rect
-from nau_py.passes.frame import FrameContext, PassRecord
+from nau_py.passes.drawing import resolve_view
+from nau_py.passes.frame import FrameContext
+from nau_py.passes.report import PassReport
 
 STRENGTH = 0.5
 """What is left of the light in the corners."""
@@ -25,8 +26,8 @@ class _Vignette:
             access.keeps.append(resource)
         return access
 
-    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
-        target, _ = target_and_rect(pass_, frame, uses_camera=False)
+    def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
+        target = resolve_view(pass_, frame).target
         texture = target.textures[target.colors[0].name]
         values = texture.read_values()
         height, width = values.shape[:2]
@@ -35,7 +36,7 @@ class _Vignette:
         factor = 1 - (1 - STRENGTH) * (across**2 + up**2) / 2
         values[:, :, :3] *= factor[:, :, None]
         texture.write_values(values)
-        record.pixels = width * height
+        return PassReport(pixels=width * height)
 
 
 Vignette = _Vignette()

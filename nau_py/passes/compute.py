@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from nau_py.graph.contract import Access
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
 from nau_py.model.pass_classes import ComputePass
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_material, add_process, buffer
-
-if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord
+from nau_py.passes.drawing import (
+    dispatch_compute,
+    draw_context,
+    pass_value,
+    run_process,
+    window_view,
+)
+from nau_py.passes.frame import FrameContext
+from nau_py.passes.report import PassReport
 
 
 class ComputeClass:
@@ -31,8 +35,6 @@ class ComputeClass:
 
     def groups(self, pass_: ComputePass, frame: FrameContext) -> tuple[int, int, int]:
         """Work groups along x, y, z; DIM_* child tags override the material's numbers."""
-        from nau_py.passes.drawing import pass_value
-
         counts = []
         for axis in "XYZ":
             if f"DIM_{axis}" in pass_.settings:
@@ -49,26 +51,17 @@ class ComputeClass:
                 counts.append(int(frame.project.number(written, 1.0)))
         return counts[0], counts[1], counts[2]
 
-    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
-        from nau_py.passes.drawing import draw_context, identity, process
-        from nau_py.raster.draw import bind_material, set_uniforms, unbind_material
-
+    def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
         if not isinstance(pass_, ComputePass) or pass_.material is None:
-            return
+            return PassReport()
         resources = frame.session.resources
-        process(pass_.preProcess, frame)
+        run_process(pass_.preProcess, frame)
         library = pass_.material.fromLibrary or DEFAULT_LIBRARY
         material = frame.world.materials.get(library, pass_.material.name or "")
         program = resources.program(*material.program) if material else None
         if material is None or program is None or not program.is_compute:
-            return
-        context = draw_context(pass_, frame, resources.window, identity(), identity(), lights=False)
-        context.material = material
-        bind_material(resources, material)
-        set_uniforms(program, context)
-        groups = self.groups(pass_, frame)
-        if all(groups):
-            program.mgl.run(*groups)
-        unbind_material(material)
-        resources.barrier()
-        process(pass_.postProcess, frame)
+            return PassReport()
+        context = draw_context(pass_, frame, window_view(frame))
+        dispatch_compute(program, material, self.groups(pass_, frame), context)
+        run_process(pass_.postProcess, frame)
+        return PassReport()

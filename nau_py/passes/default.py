@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_commands, add_maps, add_process, add_target
-
-if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord
+from nau_py.passes.drawing import begin_drawing, draw_scenes
+from nau_py.passes.frame import FrameContext
+from nau_py.passes.report import PassReport
 
 
 class DefaultClass:
@@ -24,9 +22,7 @@ class DefaultClass:
         add_target(access, project, pass_, clears=True)
         return access
 
-    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
-        from nau_py.passes.drawing import begin, draw_scenes
-
-        frame.camera = frame.world.camera(pass_.camera_name)
-        target = begin(pass_, frame, uses_camera=True)
-        draw_scenes(pass_, frame, target, record)
+    def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
+        view = begin_drawing(pass_, frame, frame.world.camera(pass_.camera_name))
+        draw_scenes(pass_, frame, view)
+        return PassReport(pixels=view.pixels)

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from nau_py.model.passes import Pass
 from nau_py.passes.default import DefaultClass
-
-if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord
+from nau_py.passes.drawing import begin_drawing, draw_scenes
+from nau_py.passes.frame import FrameContext
+from nau_py.passes.light_camera import frustum_corners, light_camera
+from nau_py.passes.report import PassReport
 
 
 class DepthmapClass(DefaultClass):
     """Rasterises scenes from the first light of the pass."""
 
-    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
-        from nau_py.passes.drawing import begin, draw_scenes
-        from nau_py.passes.light_camera import frustum_corners, light_camera
-        from nau_py.raster.gl import GL
-
+    def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
         eye = frame.world.camera(pass_.camera_name)
         aspect = (
             frame.session.camera_rects.get(eye.name) or frame.world.viewport(eye.viewport)
@@ -33,8 +28,6 @@ class DepthmapClass(DefaultClass):
         lights = frame.lights(pass_) or [frame.world.light("__nauDefault")]
         camera = light_camera(name, lights[0], corners)
         frame.world.add_camera(camera)
-        frame.camera = camera
-        target = begin(pass_, frame, uses_camera=True)
-        GL.glEnable(GL.GL_DEPTH_CLAMP)
-        draw_scenes(pass_, frame, target, record)
-        GL.glDisable(GL.GL_DEPTH_CLAMP)
+        view = begin_drawing(pass_, frame, camera)
+        draw_scenes(pass_, frame, view, depth_clamp=True)
+        return PassReport(pixels=view.pixels)

@@ -1,8 +1,12 @@
-"""What the drawing pass classes share: target, viewport, clears, uniforms' context."""
+"""Steps that the drawing pass classes share: view, clears, context of uniforms, process items.
+
+OpenGL is imported inside the functions that use it, and here only: pass classes import this module
+at the top, and linting loads them.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -11,143 +15,204 @@ import numpy as np
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass, ProcessBuffer, ProcessTexture
 from nau_py.passes.access import buffer, texture
-from nau_py.passes.frame import FrameContext, PassRecord
-from nau_py.scene.mesh import F64, SceneObject
+from nau_py.passes.frame import FrameContext, View
+from nau_py.scene.camera import CameraState
+from nau_py.scene.mesh import F64, Mesh, SceneObject
 from nau_py.scene.viewport import Rect
 
 if TYPE_CHECKING:
+    from nau_py.raster.programs import Program
     from nau_py.raster.semantics import DrawContext
-    from nau_py.raster.targets import Target
+    from nau_py.scene.material import RenderMaterial
 
 
 def pass_value(project: Project, pass_: Pass, name: str) -> bool | int | float | str:
-    """The first component of a PASS attribute."""
+    """Return the first component of a PASS attribute."""
     return project.value(pass_, "PASS", name)[0]
 
 
 def viewport_names(pass_: Pass) -> list[str]:
-    """The viewports that a pass names; the first one counts for clearing and aspect."""
+    """Return the viewports that a pass names; clearing and aspect follow the first one."""
     single = [pass_.viewport.name] if pass_.viewport and pass_.viewport.name else []
     return single + [v.name for v in pass_.viewports if v.name]
 
 
-def target_and_rect(pass_: Pass, frame: FrameContext, uses_camera: bool) -> tuple[Target, Rect]:
-    """Where a pass draws (docs/format.md, 11.5)."""
+def resolve_view(pass_: Pass, frame: FrameContext, camera: CameraState | None = None) -> View:
+    """Return the view of a pass: its target or the window, and its viewport (docs/format.md, 11.5).
+
+    ``camera``: the camera of the pass, whose viewport counts where the pass has none. Without it
+    the pass inherits the current camera and, in the window, the current rectangle. Resizes a target
+    to the pass's viewport.
+    """
     session = frame.session
     owner = frame.project.target_of(pass_)
     names = viewport_names(pass_)
     rect = frame.world.viewport(names[0]) if names else None
+    chosen = camera or session.view.camera
     if owner is None:
+        if rect is None and camera is None:
+            rect = session.view.rect
         if rect is None:
-            rect = frame.rect
-            if uses_camera:
-                camera = frame.camera
-                kept = session.camera_rects.get(camera.name)
-                rect = kept or frame.world.viewport(camera.viewport)
-        return session.resources.window, rect
+            rect = session.camera_rects.get(chosen.name) or frame.world.viewport(chosen.viewport)
+        return View(chosen, session.resources.window, rect)
     target = session.resources.target(owner[0], owner[1].name or "")
     if rect is None:
         rect = Rect(0.0, 0.0, float(target.width), float(target.height), target.clear)
-        if uses_camera:
-            session.camera_rects[frame.camera.name] = rect
+        if camera is not None:
+            session.camera_rects[camera.name] = rect
     else:
         target.resize(max(int(rect.width), 1), max(int(rect.height), 1))
         rect = Rect(rect.x, rect.y, rect.width, rect.height, target.clear)
-    return target, rect
+    return View(chosen, target, rect)
 
 
-def begin(
+def begin_view(pass_: Pass, frame: FrameContext, camera: CameraState | None = None) -> View:
+    """Return :func:`resolve_view`, made current for the passes that follow."""
+    frame.session.view = view = resolve_view(pass_, frame, camera)
+    return view
+
+
+def begin_drawing(
     pass_: Pass,
     frame: FrameContext,
-    uses_camera: bool,
-    clears: bool = True,
+    camera: CameraState | None = None,
     window_clear: tuple[float, float, float, float] | None = None,
-) -> Target:
-    """Bind the target of a pass and clear it. Leaves the pass's rectangle in ``frame.rect``.
-    ``window_clear``: the window's colour in the place of the viewport's."""
+) -> View:
+    """Make the view of a pass current, bind its target and clear it.
+
+    ``window_clear``: clear colour of the window, instead of the viewport's.
+    """
     from nau_py.raster.state import apply_stencil, reset_state
 
     project = frame.project
-    target, rect = target_and_rect(pass_, frame, uses_camera)
-    if window_clear is not None and target is frame.session.resources.window:
-        rect = replace(rect, clear=window_clear)
-    frame.rect = rect
+    view = resolve_view(pass_, frame, camera)
+    if window_clear is not None and view.target is frame.session.resources.window:
+        view = replace(view, rect=replace(view.rect, clear=window_clear))
+    frame.session.view = view
+    target, rect = view.target, view.rect
     reset_state()
     target.bind(rect)
     for index, name in enumerate(viewport_names(pass_)[1:], 1):
         target.add_viewport(index, frame.world.viewport(name))
-    if clears:
-        depth_writes = bool(pass_value(project, pass_, "DEPTH_MASK"))
-        if pass_value(project, pass_, "COLOR_CLEAR"):
-            target.clear_color(rect.clear)
-        if pass_value(project, pass_, "DEPTH_CLEAR") and depth_writes:
-            target.clear_depth(float(pass_value(project, pass_, "DEPTH_CLEAR_VALUE")))
-        if pass_value(project, pass_, "STENCIL_CLEAR"):
-            target.clear_stencil(int(pass_value(project, pass_, "STENCIL_CLEAR_VALUE")))
+    depth_writes = bool(pass_value(project, pass_, "DEPTH_MASK"))
+    if pass_value(project, pass_, "COLOR_CLEAR"):
+        target.clear_color(rect.clear)
+    if pass_value(project, pass_, "DEPTH_CLEAR") and depth_writes:
+        target.clear_depth(float(pass_value(project, pass_, "DEPTH_CLEAR_VALUE")))
+    if pass_value(project, pass_, "STENCIL_CLEAR"):
+        target.clear_stencil(int(pass_value(project, pass_, "STENCIL_CLEAR_VALUE")))
     names = [a.name for a in project.registry["PASS"] if a.name.startswith("STENCIL")]
     apply_stencil({name: project.value(pass_, "PASS", name) for name in names})
-    return target
+    return view
 
 
 def draw_context(
-    pass_: Pass, frame: FrameContext, target: Target, projection: F64, view: F64, lights: bool
+    pass_: Pass,
+    frame: FrameContext,
+    view: View,
+    matrices: tuple[F64, F64] | None = None,
+    lights: bool = False,
 ) -> DrawContext:
-    """The context that uniform sources of this pass refer to."""
+    """Return the context that uniform sources of this pass refer to.
+
+    ``matrices``: world to eye and eye to clip space, (4, 4) for column vectors; None: identities.
+    """
     from nau_py.raster.semantics import DrawContext
 
     instances = int(pass_value(frame.project, pass_, "INSTANCE_COUNT"))
     if not instances and pass_.scenes is not None:
         instances = int(frame.project.number(pass_.scenes.instances))
+    to_eye, to_clip = matrices or (np.eye(4), np.eye(4))
     return DrawContext(
         frame.world,
         frame.session.resources,
         pass_,
         frame.index,
         frame.timer_ms,
-        frame.camera,
-        frame.rect,
+        view.camera,
+        view.rect,
         frame.lights(pass_) if lights else [],
-        projection,
-        view,
-        target.name,
+        to_clip,
+        to_eye,
+        view.target.name,
         instances=instances,
         pipeline=frame.session.pipeline,
         indirect=pass_.scenes.drawIndirectBuffer if pass_.scenes is not None else None,
     )
 
 
-def camera_context(pass_: Pass, frame: FrameContext, target: Target) -> DrawContext:
-    """:func:`draw_context` with the matrices of the frame's current camera, and the lights."""
-    projection = frame.camera.projection_matrix(frame.rect.aspect)
-    view = frame.camera.view_matrix()
-    return draw_context(pass_, frame, target, projection, view, lights=True)
+def camera_context(pass_: Pass, frame: FrameContext, view: View) -> DrawContext:
+    """Return :func:`draw_context` with the matrices of the view's camera, and the lights."""
+    camera = view.camera
+    matrices = camera.view_matrix(), camera.projection_matrix(view.rect.aspect)
+    return draw_context(pass_, frame, view, matrices, lights=True)
+
+
+def window_view(frame: FrameContext) -> View:
+    """Return the current view with the window for a target."""
+    return replace(frame.session.view, target=frame.session.resources.window)
+
+
+def draw_objects(
+    objects: list[SceneObject],
+    material_of: Callable[[str], RenderMaterial | None],
+    context: DrawContext,
+    depth_clamp: bool = False,
+) -> None:
+    """Draw objects with their mapped materials into the bound target.
+
+    ``depth_clamp``: fragments nearer or farther than the depth range are clamped, not clipped.
+    """
+    from nau_py.raster.draw import draw, draw_list
+    from nau_py.raster.gl import GL
+
+    if depth_clamp:
+        GL.glEnable(GL.GL_DEPTH_CLAMP)
+    draw(draw_list(objects, material_of), context)
+    if depth_clamp:
+        GL.glDisable(GL.GL_DEPTH_CLAMP)
 
 
 def draw_scenes(
     pass_: Pass,
     frame: FrameContext,
-    target: Target,
-    record: PassRecord,
+    view: View,
     more: Sequence[SceneObject] = (),
+    depth_clamp: bool = False,
 ) -> None:
-    """Draw the scenes of a pass, and ``more``, with the current camera, between its process
-    items."""
-    from nau_py.raster.draw import draw, draw_list
-
-    process(pass_.preProcess, frame)
+    """Draw the scenes of a pass, and ``more``, between its process items."""
+    run_process(pass_.preProcess, frame)
     materials = frame.session.pass_materials(pass_)
     objects = [*frame.world.objects(pass_.scene_names), *more]
-    draw(draw_list(objects, materials.__getitem__), camera_context(pass_, frame, target))
+    context = camera_context(pass_, frame, view)
+    draw_objects(objects, materials.__getitem__, context, depth_clamp)
     frame.session.resources.barrier()
-    process(pass_.postProcess, frame)
-    note_pixels(record, frame)
+    run_process(pass_.postProcess, frame)
 
 
-def identity() -> F64:
-    return np.eye(4)
+def draw_mesh(mesh: Mesh, material: RenderMaterial, context: DrawContext) -> None:
+    """Draw the first group of a mesh, untransformed, into the bound target."""
+    from nau_py.raster.draw import DrawItem, draw
+
+    draw([DrawItem(mesh, 0, material, np.eye(4))], context)
 
 
-def process(items: Sequence[ProcessTexture | ProcessBuffer], frame: FrameContext) -> None:
+def dispatch_compute(
+    program: Program, material: RenderMaterial, groups: tuple[int, int, int], context: DrawContext
+) -> None:
+    """Run a compute program with the resources of its material; nothing where a count is 0."""
+    from nau_py.raster.draw import bind_material, set_uniforms, unbind_material
+
+    context.material = material
+    bind_material(context.resources, material)
+    set_uniforms(program, context)
+    if all(groups):
+        program.mgl.run(*groups)
+    unbind_material(material)
+    context.resources.barrier()
+
+
+def run_process(items: Sequence[ProcessTexture | ProcessBuffer], frame: FrameContext) -> None:
     """Run pre- or post-process items (docs/format.md, 4.5)."""
     resources = frame.session.resources
     for item in items:
@@ -167,8 +232,3 @@ def process(items: Sequence[ProcessTexture | ProcessBuffer], frame: FrameContext
             found.clear(level)
         if settings.get("MIPMAP"):
             found.generate_mipmaps()
-
-
-def note_pixels(record: PassRecord, frame: FrameContext) -> None:
-    """Record the pixels of the rectangle that the pass drew into."""
-    record.pixels = max(int(frame.rect.width), 0) * max(int(frame.rect.height), 0)

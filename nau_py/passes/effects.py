@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from nau_py.effects.analysis import ALPHA, called_for, opaque
@@ -17,7 +17,7 @@ from nau_py.effects.facts import (
 from nau_py.model.effects import ALL, AUTO, wanted
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import BUILTIN, Program, RayMaterial, RaytracePass
-from nau_py.passes.frame import FrameContext, PassRecord
+from nau_py.passes.frame import FrameContext
 from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.programs.source import stand_in
 from nau_py.raytrace.tracing.simulated import NEGLIGIBLE, Simulated
@@ -123,12 +123,16 @@ def decisions(facts: PassFacts, frame: FrameContext) -> tuple[list[Decision], Si
 
 
 def effect_data(
-    made: list[Decision], facts: PassFacts, told: Simulated, counts: RayCounts, record: PassRecord
-) -> list[dict[str, Any]]:
+    made: list[Decision],
+    facts: PassFacts,
+    told: Simulated,
+    counts: RayCounts,
+    stages: Mapping[str, float],
+) -> tuple[dict[str, Any], ...]:
     """The entries of the report. ``ms_saved`` of rays that were not sent is an estimate from what a
     ray of this pass took on average."""
     seen = {facts.materials[k].name for k in counts.viewed if k < len(facts.materials)}
-    sampling = sum(record.stages.get(name, 0.0) for name in ("trace", "shade"))
+    sampling = sum(stages.get(name, 0.0) for name in ("trace", "shade"))
     each = sampling / max(sum(counts.rays.values()), 1)
     found = []
     for d in made:
@@ -154,4 +158,4 @@ def effect_data(
                 "nothing of them is transparent (exact)"
             )
         found.append(data)
-    return found
+    return tuple(found)

@@ -1,16 +1,14 @@
-"""What a pass executes on: the frame, and the record of what the pass cost."""
+"""Session, frame and view that passes execute with."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeVar
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import TYPE_CHECKING, TypeVar
 
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
+from nau_py.passes.report import PassRecord
 from nau_py.passes.state import PassState, PassStates
 from nau_py.scene.camera import CameraState
 from nau_py.scene.lights import LightState
@@ -20,20 +18,20 @@ from nau_py.scene.world import World
 
 if TYPE_CHECKING:
     from nau_py.raster.resources import Resources
+    from nau_py.raster.targets import Target
 
 
 @dataclass(slots=True)
 class RunOptions:
-    """What the user asks of a run, beside the project.
+    """Options of a run that the project does not have.
 
     ``samples`` overrides RAYS_PER_PIXEL; ``threads`` of 0 means one a core, ``tile`` (rays) of 0
-    a size that suits the programs; ``check_numerics``
-    makes any value that is not finite an error. ``mask``: ``project``, or ``none`` or ``all`` to
-    write 0 or 1 into the mask of the raytrace pass. ``texture_filter``: ``NEAREST`` or ``LINEAR``
-    for image textures whose filter the project leaves open. ``window_format``: the window's texel
-    format; ``RGBA32F`` keeps what 8 bits would round and clamp. ``effects``: ``auto``, ``all``,
-    ``none`` or a list, in the place of the project's. ``programs``: ``py`` for
-    the Python files beside compiled programs.
+    a size that suits the programs; ``check_numerics`` makes any value that is not finite an error.
+    ``mask``: ``project``, or ``none`` or ``all`` to write 0 or 1 into the mask of the raytrace
+    pass. ``texture_filter``: ``NEAREST`` or ``LINEAR`` for image textures whose filter the project
+    does not set. ``window_format``: the window's texel format; ``RGBA32F`` neither rounds nor
+    clamps colours. ``effects``: ``auto``, ``all``, ``none`` or a list, instead of the project's.
+    ``programs``: ``py`` for the Python files beside compiled programs.
     """
 
     samples: int | None = None
@@ -50,33 +48,6 @@ class RunOptions:
     programs: str = ""
 
 
-@dataclass(slots=True)
-class PassRecord:
-    """What a pass did. ``rays`` counts rays by kind; ``avoided`` the primary rays not traced.
-    ``stages``: milliseconds by stage, where a pass has several. ``taken`` and ``error``: samples
-    and estimated standard error of each pixel of a raytrace pass's target, (h, w), row 0 at the
-    bottom; the error is infinite where one sample tells nothing, 0 where nothing was traced."""
-
-    name: str
-    pass_class: str
-    status: str = "run"
-    reason: str = ""
-    ms: float = 0.0
-    pixels: int = 0
-    rays: dict[str, int] = field(default_factory=dict)
-    avoided: int = 0
-    est_error: float | None = None
-    nonfinite: int = 0
-    blame: str = ""
-    """Where the first value that is not finite came from."""
-    notes: list[str] = field(default_factory=list)
-    stages: dict[str, float] = field(default_factory=dict)
-    taken: NDArray[np.int32] | None = None
-    error: NDArray[np.float32] | None = None
-    effects: list[dict[str, Any]] = field(default_factory=list)
-    """What a raytrace pass simulates and leaves out, for the report."""
-
-
 P = TypeVar("P", bound=Pass)
 S = TypeVar("S", bound=PassState)
 Progress = Callable[[str, int, int], None]
@@ -84,7 +55,21 @@ Progress = Callable[[str, int, int], None]
 
 
 def no_progress(name: str, done: int, total: int) -> None:
-    """Say nothing."""
+    """Ignore the progress of a pass."""
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """Camera, target and rectangle of the target (pixels) that a pass draws with."""
+
+    camera: CameraState
+    target: Target
+    rect: Rect
+
+    @property
+    def pixels(self) -> int:
+        """Number of pixels in the rectangle."""
+        return max(int(self.rect.width), 0) * max(int(self.rect.height), 0)
 
 
 @dataclass(slots=True)
@@ -103,8 +88,20 @@ class Session:
     progress: Progress = no_progress
     first_frame: int = 0
     """The frame that counts as 0: scripts may set FRAME_COUNT."""
+    view: View = field(init=False)
+    """The view of the pass that drew last, which passes without a camera or viewport of their own
+    inherit, as in Nau."""
 
-    def turn_to(self, pipeline: str, index: int) -> None:
+    def __post_init__(self) -> None:
+        self.reset_view()
+
+    def reset_view(self) -> None:
+        """Make the default camera and the whole window current, as a frame begins."""
+        window = self.resources.window
+        rect = Rect(0.0, 0.0, float(window.width), float(window.height))
+        self.view = View(self.world.camera(None), window, rect)
+
+    def start_pipeline(self, pipeline: str, index: int) -> None:
         """Go on with another pipeline, of which frame ``index`` is number 0."""
         self.pipeline, self.first_frame = pipeline, index
         self.materials.clear()  # both are kept by the names of passes, unique in a pipeline only
@@ -115,7 +112,7 @@ class Session:
         return self.states.get(pass_.name or "", factory, lambda: factory(pass_, self))
 
     def pass_materials(self, pass_: Pass) -> PassMaterials:
-        """The material mapping of a pass, made once."""
+        """Return the material mapping of a pass, made once."""
         key = pass_.name or ""
         if key not in self.materials:
             self.materials[key] = self.world.materials.for_pass(
@@ -124,17 +121,23 @@ class Session:
         return self.materials[key]
 
 
-@dataclass(slots=True)
+@dataclass(frozen=True, slots=True)
 class FrameContext:
-    """One frame in the making."""
+    """The frame that passes execute in.
+
+    ``number``: frames since the session began. ``timer_ms``: simulated time. ``records``: of the
+    passes of this frame so far.
+    """
 
     session: Session
-    index: int
+    number: int
     timer_ms: float
-    camera: CameraState
-    rect: Rect
-    records: list[PassRecord] = field(default_factory=list)
-    """Of the passes of this frame so far."""
+    records: tuple[PassRecord, ...] = ()
+
+    @property
+    def index(self) -> int:
+        """Frames since the pipeline began, or as scripts have set FRAME_COUNT."""
+        return self.number - self.session.first_frame
 
     @property
     def project(self) -> Project:
@@ -145,5 +148,5 @@ class FrameContext:
         return self.session.world
 
     def lights(self, pass_: Pass) -> list[LightState]:
-        """The lights of a pass, by light index."""
+        """Return the lights of a pass, by light index."""
         return [self.world.light(light.name or "") for light in pass_.lights]

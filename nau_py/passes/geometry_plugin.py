@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from nau_py.model.passes import Pass
 from nau_py.passes.default import DefaultClass
+from nau_py.passes.drawing import begin_drawing, draw_scenes
+from nau_py.passes.frame import FrameContext
+from nau_py.passes.report import PassReport
 from nau_py.scene.mesh import Group, Mesh, SceneObject, pad4
 from nau_py.scene.readers.model_material import PRIMITIVE_MATERIAL
-
-if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord
 
 
 @lru_cache(maxsize=1)
@@ -35,13 +34,9 @@ class GeometryPluginClass(DefaultClass):
     of the pass are not set: shaders see the default light.
     """
 
-    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
-        from nau_py.passes.drawing import begin, draw_scenes
-        from nau_py.raster.gl import GL
-
-        frame.camera = frame.world.camera(pass_.camera_name)
+    def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
         pass_ = pass_.model_copy(update={"lights": []})
-        target = begin(pass_, frame, uses_camera=True, window_clear=BLACK)
-        GL.glEnable(GL.GL_DEPTH_CLAMP)
-        draw_scenes(pass_, frame, target, record, [_plane()])
-        GL.glDisable(GL.GL_DEPTH_CLAMP)
+        camera = frame.world.camera(pass_.camera_name)
+        view = begin_drawing(pass_, frame, camera, window_clear=BLACK)
+        draw_scenes(pass_, frame, view, [_plane()], depth_clamp=True)
+        return PassReport(pixels=view.pixels)

@@ -14,10 +14,12 @@ from nau_py.model.linked import Project
 from nau_py.model.mask import MaskPass, ShadowBorderSelector, TextureSelector
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_process, add_target, texture
+from nau_py.passes.drawing import begin_drawing, camera_context, draw_objects, run_process
+from nau_py.passes.frame import FrameContext, View
+from nau_py.passes.report import PassReport
 from nau_py.scene.transforms import to_unit_cube
 
 if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord
     from nau_py.scene.material import RenderMaterial
 
 ITEM_MATERIAL = "__item"
@@ -46,16 +48,14 @@ class MaskClass:
         add_target(access, project, pass_, clears=True)
         return access
 
-    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
-        from nau_py.passes.drawing import begin, camera_context, note_pixels, process
-        from nau_py.raster.draw import draw, draw_list
+    def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
         from nau_py.raytrace.selection.weights import weights
 
         assert isinstance(pass_, MaskPass)
-        frame.camera = frame.world.camera(pass_.camera_name)
-        target = begin(pass_, frame, uses_camera=True)
+        view = begin_drawing(pass_, frame, frame.world.camera(pass_.camera_name))
+        target = view.target
         target.clear_color((0.0, 0.0, 0.0, 0.0))
-        process(pass_.preProcess, frame)
+        run_process(pass_.preProcess, frame)
         drawn = frame.session.pass_materials(pass_)
         numbered: dict[str, RenderMaterial] = {}
         names: list[str] = []
@@ -69,16 +69,16 @@ class MaskClass:
             return numbered[name]
 
         objects = frame.world.objects(pass_.scene_names)
-        draw(draw_list(objects, numbered_material), camera_context(pass_, frame, target))
+        draw_objects(objects, numbered_material, camera_context(pass_, frame, view))
         image = target.textures[target.colors[0].name]
         seen = np.asarray(image.read(), np.float32)
-        visible = self._visible(pass_, frame, seen, [(n, drawn[n]) for n in names])
+        visible = self._visible(pass_, frame, view, seen, [(n, drawn[n]) for n in names])
         chosen = weights(pass_.select, visible)
         image.write(np.dstack([seen[..., :3], chosen]))
-        process(pass_.postProcess, frame)
-        note_pixels(record, frame)
+        run_process(pass_.postProcess, frame)
         selected = int((chosen > 0).sum())
-        record.notes.append(f"{selected} of {chosen.size} pixels selected")
+        note = f"{selected} of {chosen.size} pixels selected"
+        return PassReport(pixels=view.pixels, notes=(note,))
 
     def _item(self, frame: FrameContext, source: RenderMaterial, number: int) -> RenderMaterial:
         """``source`` as the item shader draws it: its state, and ``number`` for a colour."""
@@ -91,6 +91,7 @@ class MaskClass:
         self,
         pass_: MaskPass,
         frame: FrameContext,
+        view: View,
         seen: NDArray[np.float32],
         materials: list[tuple[str, RenderMaterial | None]],
     ) -> Any:
@@ -100,7 +101,7 @@ class MaskClass:
             seen[..., :3],
             np.rint(seen[..., 3]).astype(np.int32) - 1,
             [(name, dict(m.colours) if m else {}) for name, m in materials],
-            frame.camera.position,
+            view.camera.position,
         )
         for node in selectors(pass_):
             name = node.name if isinstance(node, TextureSelector) else None

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
@@ -11,9 +9,9 @@ from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_process, add_target
-
-if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord
+from nau_py.passes.drawing import resolve_view
+from nau_py.passes.frame import FrameContext
+from nau_py.passes.report import PassReport
 
 MARGIN, LINE, COLUMN = 10, 12, 150
 """Pixels from the upper left corner, from line to line, and from names to times."""
@@ -28,20 +26,20 @@ class ProfilerClass:
         add_target(access, project, pass_, clears=False)
         return access
 
-    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
-        from nau_py.passes.drawing import target_and_rect
-
-        target, _ = target_and_rect(pass_, frame, uses_camera=False)
+    def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
+        target = resolve_view(pass_, frame).target
         texture = target.textures[target.colors[0].name]
         lines = [(r.name, r.ms) for r in frame.records if r.status == "run"]
         lines.append(("frame", sum(r.ms for r in frame.records)))
         if texture.format.dtype != np.uint8 or texture.samples:
-            record.notes.append(f"'{target.name}' is no 8-bit texture of one sample: no text")
-            return
+            return PassReport(
+                notes=(f"'{target.name}' is no 8-bit texture of one sample: no text",)
+            )
         values = texture.read()
         written = _text(lines, target.width, target.height)
         values[..., :3][written] = 255
         texture.write(values)
+        return PassReport()
 
 
 def _text(

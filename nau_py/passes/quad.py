@@ -11,10 +11,13 @@ from nau_py.model.linked import Project
 from nau_py.model.pass_classes import QuadPass
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_maps, add_material, add_process, add_target, texture
+from nau_py.passes.drawing import begin_drawing, draw_context, draw_mesh, run_process
+from nau_py.passes.frame import FrameContext
+from nau_py.passes.report import PassReport
+from nau_py.scene.primitives import quad
 from nau_py.scene.readers.model_material import QUAD_MATERIAL
 
 if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord
     from nau_py.scene.material import RenderMaterial
 
 
@@ -53,15 +56,10 @@ class QuadClass:
             return replace(plain, textures={0: TextureBinding(name)})
         return frame.session.pass_materials(pass_)[QUAD_MATERIAL] or plain
 
-    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
-        from nau_py.passes.drawing import begin, draw_context, identity, note_pixels, process
-        from nau_py.raster.draw import DrawItem, draw
-        from nau_py.scene.primitives import quad
-
-        target = begin(pass_, frame, uses_camera=False)
-        process(pass_.preProcess, frame)
-        context = draw_context(pass_, frame, target, identity(), identity(), lights=False)
-        draw([DrawItem(quad(), 0, self.material(pass_, frame), identity())], context)
+    def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
+        view = begin_drawing(pass_, frame)
+        run_process(pass_.preProcess, frame)
+        draw_mesh(quad(), self.material(pass_, frame), draw_context(pass_, frame, view))
         frame.session.resources.barrier()
-        process(pass_.postProcess, frame)
-        note_pixels(record, frame)
+        run_process(pass_.postProcess, frame)
+        return PassReport(pixels=view.pixels)

@@ -16,9 +16,10 @@ from nau_py.model.linked import Project
 from nau_py.model.pass_classes import RayBuffer, RayQueryPass
 from nau_py.model.passes import Pass
 from nau_py.passes.access import buffer
+from nau_py.passes.frame import FrameContext, Session
+from nau_py.passes.report import PassReport
 
 if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord, Session
     from nau_py.raytrace.tracing.accelerator import Accelerator
 
 RAY_BYTES, HIT_BYTES = 32, 16
@@ -40,18 +41,18 @@ class RayQueryClass:
                 access.add_write(buffer(pass_.hits.buffer, pass_.hits.fromLibrary))
         return access
 
-    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
+    def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
         if not isinstance(pass_, RayQueryPass) or pass_.rays is None or pass_.hits is None:
-            return
+            return PassReport()
         rays, hits = _storage(pass_, pass_.rays, frame), _storage(pass_, pass_.hits, frame)
         count = min(_count(pass_, frame, hits.size), rays.size // RAY_BYTES, hits.size // HIT_BYTES)
         if count <= 0:
-            return
+            return PassReport()
         given = np.frombuffer(rays.read(count * RAY_BYTES), np.float32).reshape(-1, 8)
         accelerator = frame.session.state(pass_, RayQueryState).accelerator()
         hits.write(_trace(accelerator, given).tobytes())
         frame.session.resources.barrier()
-        record.rays = {"query": count}
+        return PassReport(rays={"query": count})
 
 
 class RayQueryState:

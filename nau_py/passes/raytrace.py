@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,11 @@ from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.model.raytrace import RaytracePass
 from nau_py.passes.access import add_process, buffer, texture
+from nau_py.passes.drawing import begin_view, pass_value, run_process
+from nau_py.passes.frame import FrameContext
 from nau_py.passes.ptx.faults import ptx_faults
-from nau_py.passes.stages import Stages
+from nau_py.passes.report import PassReport, Stages
 from nau_py.raytrace.programs.source import launches_ptx
-
-if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord
 
 
 class RaytraceClass:
@@ -54,8 +53,7 @@ class RaytraceClass:
             return ptx_faults(project, pass_)
         return ()
 
-    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
-        from nau_py.passes.drawing import pass_value, process, target_and_rect
+    def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
         from nau_py.passes.effects import effect_data
         from nau_py.passes.tracing import (
             TracingState,
@@ -69,17 +67,15 @@ class RaytraceClass:
         from nau_py.raytrace.tracing.dispatch import LaunchSettings, Work, run_launch, select
 
         if not isinstance(pass_, RaytracePass) or pass_.rtEntryPoint is None:
-            return
+            return PassReport()
         if launches_ptx(pass_, frame.project.folder, frame.session.options.programs):
             from nau_py.passes.ptx.execute import execute_ptx
 
-            execute_ptx(pass_, frame, record)
-            return
-        frame.camera = frame.world.camera(pass_.camera_name)
-        target, rect = target_and_rect(pass_, frame, uses_camera=True)
-        frame.rect = rect
-        process(pass_.preProcess, frame)
-        stages = Stages(record)
+            return execute_ptx(pass_, frame)
+        view = begin_view(pass_, frame, frame.world.camera(pass_.camera_name))
+        target = view.target
+        run_process(pass_.preProcess, frame)
+        stages = Stages()
         options = frame.session.options
         if options.mask != "project":
             force_mask(pass_, frame, float(options.mask == "all"))
@@ -90,12 +86,11 @@ class RaytraceClass:
         pixels = select(mask, width, height)
         if not len(pixels):
             store_colours(target, pixels, np.zeros((0, 4), np.float32))
-            process(pass_.postProcess, frame)
-            record.status, record.reason = "left_out", "its mask selects no pixel"
-            return
+            run_process(pass_.postProcess, frame)
+            return PassReport(left_out="its mask selects no pixel", stages=stages.ms)
         state = frame.session.state(pass_, TracingState)
         state.update(pass_)
-        scene = state.scene(pass_, frame, target, inputs)
+        scene = state.scene(pass_, frame, view, inputs)
 
         def value(name: str) -> float:
             return float(pass_value(frame.project, pass_, name))
@@ -108,8 +103,8 @@ class RaytraceClass:
             state.generate,
             state.exception,
             width,
-            camera_record(frame.camera, rect, state.geometry.centre),
-            camera_rays(frame.camera, rect),
+            camera_record(view.camera, view.rect, state.geometry.centre),
+            camera_rays(view.camera, view.rect),
             LaunchSettings(
                 samples,
                 options.threads,
@@ -140,27 +135,32 @@ class RaytraceClass:
         stages.move("shade", "trace", result.counts.traced_share)
         store_colours(target, pixels, result.colours)
         stages.end("read_back")
-        record.taken = _scattered(result.estimate.taken, pixels, (height, width), np.int32)
-        record.error = _scattered(result.estimate.error, pixels, (height, width), np.float32)
-        process(pass_.postProcess, frame)
-        record.pixels = len(pixels)
-        record.effects = effect_data(
-            state.decisions, state.facts, state.simulated, result.counts, record
+        run_process(pass_.postProcess, frame)
+        effects = effect_data(
+            state.decisions, state.facts, state.simulated, result.counts, stages.ms
         )
-        record.rays = dict(result.counts.rays)
-        record.avoided = width * height * samples - result.taken
-        record.est_error = result.est_error
-        record.nonfinite = result.counts.nonfinite
-        record.blame = result.counts.blamed(width)
+        notes = []
         outliers = int(result.estimate.unreliable.sum())
         if outliers:
-            record.notes.append(
+            notes.append(
                 f"in {outliers} pixels one sample outweighs all others: est_error is uncertain"
             )
         if result.counts.cut_layers:
-            record.notes.append(
-                f"{result.counts.cut_layers} rays met more ignored hits than the limit"
-            )
+            notes.append(f"{result.counts.cut_layers} rays met more ignored hits than the limit")
+        shape = height, width
+        return PassReport(
+            pixels=len(pixels),
+            rays=dict(result.counts.rays),
+            avoided=width * height * samples - result.taken,
+            est_error=result.est_error,
+            nonfinite=result.counts.nonfinite,
+            blame=result.counts.blamed(width),
+            notes=tuple(notes),
+            stages=stages.ms,
+            samples=_scattered(result.estimate.taken, pixels, shape, np.int32),
+            error=_scattered(result.estimate.error, pixels, shape, np.float32),
+            effects=effects,
+        )
 
 
 def _scattered(

@@ -7,15 +7,14 @@ object is a :class:`PassClass` (docs/extending.md).
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
+from nau_py.passes.frame import FrameContext
+from nau_py.passes.report import PassReport
 from nau_py.plugins import PASSES, loaded
-
-if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord
 
 
 class PassClass(Protocol):
@@ -25,8 +24,8 @@ class PassClass(Protocol):
         """What ``pass_`` reads and writes. Pure."""
         ...
 
-    def execute(self, pass_: Pass, frame: FrameContext, record: PassRecord) -> None:
-        """Run ``pass_`` once and note what it cost in ``record``."""
+    def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
+        """Run ``pass_`` once; return the work it did."""
         ...
 
 

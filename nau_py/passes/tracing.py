@@ -17,7 +17,7 @@ from nau_py.model.raytrace import RayMaterial as RayMaterialNode
 from nau_py.model.texture import Texture
 from nau_py.passes.drawing import camera_context, pass_value
 from nau_py.passes.effects import decisions, pass_facts
-from nau_py.passes.frame import FrameContext, Session
+from nau_py.passes.frame import FrameContext, Session, View
 from nau_py.passes.material_shading import MaterialShading
 from nau_py.plugins import program_files
 from nau_py.process.paths import resolve as resolve_path
@@ -174,12 +174,12 @@ class TracingState:
         self,
         pass_: RaytracePass,
         frame: FrameContext,
-        target: Target,
+        view: View,
         inputs: dict[str, NDArray[Any]],
     ) -> Scene:
         """The scene of this frame: materials, lights and parameters resolved."""
         lights = [RayLight(light.name, light.values) for light in frame.lights(pass_)]
-        context = camera_context(pass_, frame, target)
+        context = camera_context(pass_, frame, view)
         self.shading.context = context
         materials = []
         for name in self.geometry.materials:
@@ -190,7 +190,7 @@ class TracingState:
         depth = int(pass_value(frame.project, pass_, "MAX_DEPTH"))
         entries = [self.entry(pass_, name) for name in self.geometry.materials]
         self.facts = pass_facts(
-            pass_, frame.project, entries, materials, frame.lights(pass_), frame.camera, depth
+            pass_, frame.project, entries, materials, frame.lights(pass_), view.camera, depth
         )
         self.decisions, self.simulated = decisions(self.facts, frame)
         return Scene(
@@ -207,7 +207,7 @@ class TracingState:
                 frame.session.options.seed,
                 int(pass_value(frame.project, pass_, "LIGHT_SAMPLES")),
                 float(pass_value(frame.project, pass_, "OCCLUSION_DISTANCE")),
-                frame.rect.clear if target.name == "window" else target.clear,
+                view.rect.clear if view.target.name == "window" else view.target.clear,
                 self.simulated,
             ),
             self.texels,

@@ -12,6 +12,7 @@ from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Setting
 from nau_py.model.passes import Pass
 from nau_py.model.values import DataType, Scalar
+from nau_py.passes.drawing import camera_context, window_view
 from nau_py.passes.frame import FrameContext
 from nau_py.raster.buffers import basic_types
 from nau_py.scene.material import ImageBinding, RenderMaterial
@@ -31,7 +32,6 @@ class Attributes:
         self, frame: FrameContext, pass_: Pass, type_: str, name: str, component: str, index: int
     ) -> list[float]:
         """The numbers of an attribute; matrices column by column."""
-        from nau_py.passes.drawing import camera_context
         from nau_py.raster.semantics import resolve
 
         if type_ == "IMAGE_TEXTURE" and component != "UNIT":
@@ -40,7 +40,7 @@ class Attributes:
         if type_ == "VIEWPORT" and name != "CURRENT":
             values = self.project.value(self._viewport(name), "VIEWPORT", component)
             return [float(v) for v in values]
-        context = camera_context(pass_, frame, frame.session.resources.window)
+        context = camera_context(pass_, frame, window_view(frame))
         found = resolve(context, type_, name, component, index)
         if found is None:
             raise ValueError(f"{type_} '{name}' has no attribute '{component}' that can be read")
@@ -71,7 +71,7 @@ class Attributes:
         elif type_ == "VIEWPORT":
             self._write(self._viewport(name), component, parts)
         elif type_ == "CAMERA":
-            camera = frame.camera if name == "CURRENT" else frame.world.camera(name)
+            camera = frame.session.view.camera if name == "CURRENT" else frame.world.camera(name)
             camera.apply(component, parts)
         elif type_ == "LIGHT":
             lights = frame.lights(pass_)
@@ -106,7 +106,6 @@ class Attributes:
     def _renderer(self, frame: FrameContext, component: str, values: Sequence[Scalar]) -> None:
         if component == "FRAME_COUNT":
             frame.session.first_frame += frame.index - int(values[0])
-            frame.index = int(values[0])
         else:
             whole = self.project.registry["RENDERER"].attributes[component].type.is_integer
             parts = tuple(float(int(v)) if whole else float(v) for v in values)

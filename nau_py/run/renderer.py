@@ -22,12 +22,12 @@ from nau_py.model.values import Scalar
 from nau_py.passes import pass_classes
 from nau_py.passes.frame import (
     FrameContext,
-    PassRecord,
     Progress,
     RunOptions,
     Session,
     no_progress,
 )
+from nau_py.passes.report import PassRecord, PassReport
 from nau_py.reporting.notebook import frame_html
 from nau_py.reporting.output import png
 from nau_py.rules.engine import lint
@@ -36,7 +36,6 @@ from nau_py.run.parameters import parse
 from nau_py.run.report import machine_facts, make_report
 from nau_py.run.scripts import MAX_REPEATS, Scripts, hooks
 from nau_py.scene.names import default_material_names
-from nau_py.scene.viewport import Rect
 from nau_py.scene.world import World
 
 DEFAULT_TIME_STEP = 0.02
@@ -204,9 +203,8 @@ class Renderer:
     def _set(
         self, session: Session, where: tuple[str, str, str, int], values: Sequence[Scalar]
     ) -> None:
-        width, height = self._size
-        rect = Rect(0.0, 0.0, float(width), float(height))
-        frame = FrameContext(session, 0, 0.0, session.world.camera(None), rect)
+        session.reset_view()
+        frame = FrameContext(session, session.first_frame, 0.0)
         self.scripts.attributes.set(frame, self.plan.steps[0].pass_, *where, values)
         if where[0] == "COLOR":
             session.materials.clear()  # those of the passes are copies
@@ -274,13 +272,13 @@ class Renderer:
         )
         if self.ended:
             report["ended"] = self._turns.why
-        traced = [r for r in records if r.taken is not None]
+        traced = [r.report for r in records if r.report.samples is not None]
         if not traced:
             return Frame(frame, image, targets, report)
-        taken, wrong = traced[-1].taken, traced[-1].error
-        assert taken is not None
+        samples, wrong = traced[-1].samples, traced[-1].error
+        assert samples is not None
         assert wrong is not None
-        return Frame(frame, image, targets, report, taken[::-1], wrong[::-1])
+        return Frame(frame, image, targets, report, samples[::-1], wrong[::-1])
 
     def move(self, name: str, matrix: NDArray[Any]) -> None:
         """Put the objects called ``name`` elsewhere from the next frame on.
@@ -320,18 +318,12 @@ class Renderer:
             return self._left_out(self._turns.why)
         if self._turns.advance():
             self._plan_turn()
-            session.turn_to(self.pipeline.name or "", index)
+            session.start_pipeline(self.pipeline.name or "", index)
         session.resources.clear_buffers_by_frame()
-        width, height = self._size
         timer = index * self.time_step * 1000.0
         session.world.events.frame(index * self.time_step)
-        context = FrameContext(
-            session,
-            index - session.first_frame,
-            timer,
-            session.world.camera(None),
-            Rect(0.0, 0.0, float(width), float(height)),
-        )
+        session.reset_view()
+        context = FrameContext(session, index, timer)
         records = self._draw(context)
         if self._turns.is_last_frame(context.index):
             self._turns.end(f"it has drawn its {self.pipeline.frameCount} frames")
@@ -350,47 +342,51 @@ class Renderer:
             self._turns.end(f"its {said}")
             return self._left_out(f"the pipeline's {said}")
         for step in self.plan.steps:
-            context.records.append(self._run(step, context))
-        return context.records
+            context = replace(context, records=(*context.records, self._run(step, context)))
+        return list(context.records)
 
     def _left_out(self, reason: str) -> list[PassRecord]:
         return [PassRecord(s.name, s.pass_.pass_class, "left_out", reason) for s in self.plan.steps]
 
     def _run(self, step: Step, context: FrameContext) -> PassRecord:
+        """Run a pass with its scripts; return the outcome."""
         record = PassRecord(step.name, step.pass_.pass_class)
         reason = step.reason or _skipped_by_mode(step.pass_.run_mode, context.index)
         if reason:
-            record.status, record.reason = "left_out", reason
-            return record
+            return replace(record, status="left_out", reason=reason)
         start = perf_counter()
         pass_, scripts = step.pass_, self.scripts
         scripts.call(pass_.preScript, context, pass_)
-        times = 0
+        report, times = PassReport(), 0
         while times < MAX_REPEATS and scripts.test(pass_.testScript, context, pass_):
-            self._execute(step, context, record)
+            report = report.then(self._execute(step, context))
             times += 1
             again = pass_.testScript is not None and pass_.testScript.TEST_MODE == "RUN_WHILE"
             if not (again and scripts.running):
                 break
         scripts.call(pass_.postScript, context, pass_)
+        reason = report.left_out
         if times == 0 and pass_.testScript is not None:
-            record.status = "left_out"
-            record.reason = f"its test '{pass_.testScript.script}' says no"
+            reason = f"its test '{pass_.testScript.script}' says no"
         elif times > 1:
-            record.notes.append(f"it ran {times} times")
-        record.ms = (perf_counter() - start) * 1000
-        if record.nonfinite:
-            message = f"pass '{step.name}': {record.nonfinite} samples or rays were not finite"
-            message += record.blame
-            if context.session.options.check_numerics:
-                raise NauError(error("T014", step.pass_.location, message))
-            self._note([warning("T014", step.pass_.location, message)])
+            report = replace(report, notes=(*report.notes, f"it ran {times} times"))
+        ms = (perf_counter() - start) * 1000
+        if report.nonfinite:
+            self._note_nonfinite(step, report, context.session.options.check_numerics)
         self._note(context.session.resources.diagnostics)
-        return record
+        status = "left_out" if reason else "run"
+        return replace(record, status=status, reason=reason, ms=ms, report=report)
 
-    def _execute(self, step: Step, context: FrameContext, record: PassRecord) -> None:
+    def _note_nonfinite(self, step: Step, report: PassReport, refuse: bool) -> None:
+        message = f"pass '{step.name}': {report.nonfinite} samples or rays were not finite"
+        message += report.blame
+        if refuse:
+            raise NauError(error("T014", step.pass_.location, message))
+        self._note([warning("T014", step.pass_.location, message)])
+
+    def _execute(self, step: Step, context: FrameContext) -> PassReport:
         try:
-            pass_classes()[step.pass_.pass_class].execute(step.pass_, context, record)
+            report = pass_classes()[step.pass_.pass_class].execute(step.pass_, context)
             context.session.resources.device.ctx.finish()
             context.session.resources.check()
         except NauError:
@@ -401,6 +397,7 @@ class Renderer:
                 f"{type(bug).__name__}: {bug}"
             )
             raise NauError(error("E001", step.pass_.location, message)) from bug
+        return report
 
     def _note(self, found: list[Diagnostic]) -> None:
         """Add findings that are new; those of one pass and rule are kept once a run."""

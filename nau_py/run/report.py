@@ -12,7 +12,8 @@ import numpy as np
 
 from nau_py.diagnostics.diagnostic import Diagnostic, Severity
 from nau_py.model.linked import Project
-from nau_py.passes.frame import PassRecord, Session
+from nau_py.passes.frame import Session
+from nau_py.passes.report import PassRecord
 from nau_py.version import __version__
 
 SCHEMA = "https://nau-py.invalid/schema/report-1.json"
@@ -51,7 +52,7 @@ def halving_ms(record: PassRecord) -> float:
     The standard error falls with the square root of the number of samples, so four times as many
     are traced and shaded; what else the pass does stays. Low-discrepancy points do better.
     """
-    sampling = sum(record.stages.get(name, 0.0) for name in ("trace", "shade"))
+    sampling = sum(record.report.stages.get(name, 0.0) for name in ("trace", "shade"))
     return record.ms + 3 * sampling
 
 
@@ -64,19 +65,20 @@ def pass_data(record: PassRecord) -> dict[str, Any]:
     }
     if record.reason:
         data["reason"] = record.reason
+    done = record.report
     data |= {
         "ms": round(record.ms, 3),
-        "pixels": record.pixels,
-        "rays": dict(record.rays),
-        "rays_avoided": record.avoided,
+        "pixels": done.pixels,
+        "rays": dict(done.rays),
+        "rays_avoided": done.avoided,
     }
-    if record.est_error is not None:
-        data["est_error"] = record.est_error
+    if done.est_error is not None:
+        data["est_error"] = done.est_error
         data["ms_to_halve_error"] = round(halving_ms(record), 3)
-    if record.stages:
-        data["stages"] = {name: round(ms, 3) for name, ms in record.stages.items()}
-    if record.notes:
-        data["notes"] = list(record.notes)
+    if done.stages:
+        data["stages"] = {name: round(ms, 3) for name, ms in done.stages.items()}
+    if done.notes:
+        data["notes"] = list(done.notes)
     return data
 
 
@@ -89,12 +91,11 @@ def make_report(
     setup_ms: float,
 ) -> dict[str, Any]:
     """The report of ``frames``: (index, milliseconds, records)."""
+    done = [record.report for _, _, records in frames for record in records]
     rays: dict[str, int] = {}
-    for _, _, records in frames:
-        for record in records:
-            for kind, count in record.rays.items():
-                rays[kind] = rays.get(kind, 0) + count
-    all_records = [record for _, _, records in frames for record in records]
+    for report in done:
+        for kind, count in report.rays.items():
+            rays[kind] = rays.get(kind, 0) + count
     warnings = [str(d) for d in diagnostics if d.severity is Severity.WARNING]
     return {
         "schema": SCHEMA,
@@ -114,11 +115,11 @@ def make_report(
         "totals": {
             "ms": round(sum(ms for _, ms, _ in frames), 3),
             "rays": rays,
-            "rays_avoided": sum(r.avoided for r in all_records),
+            "rays_avoided": sum(r.avoided for r in done),
         },
-        "effects": [e for _, _, records in frames for r in records for e in r.effects],
+        "effects": [e for r in done for e in r.effects],
         "warnings": warnings,
-        "nonfinite": sum(r.nonfinite for r in all_records),
+        "nonfinite": sum(r.nonfinite for r in done),
     }
 
 

@@ -170,15 +170,20 @@ def test_a_target_follows_an_explicit_viewport(folder: Folder) -> None:
 def test_plugin_pass_classes(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     from nau_py.graph.contract import Access
     from nau_py.graph.resource import WINDOW
+    from nau_py.model.passes import Pass
+    from nau_py.passes.frame import FrameContext
     from nau_py.passes.registry import pass_classes
+    from nau_py.passes.report import PassReport
 
     class Painter:
         def access(self, *_: object) -> Access:
             return Access(writes=[WINDOW])
 
-        def execute(self, pass_: object, frame: object, record: object) -> None:
-            frame.session.resources.window.bind(frame.rect)  # type: ignore[attr-defined]
-            frame.session.resources.window.clear_color((1.0, 0.0, 0.0, 1.0))  # type: ignore[attr-defined]
+        def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
+            view = frame.session.view
+            view.target.bind(view.rect)
+            view.target.clear_color((1.0, 0.0, 0.0, 1.0))
+            return PassReport()
 
     monkeypatch.setitem(pass_classes(), "painter", Painter())
     image = nau_py.Renderer(project(folder, '<pass name="p" class="painter"/>')).render().image

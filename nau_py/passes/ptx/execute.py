@@ -8,16 +8,17 @@ from typing import TYPE_CHECKING
 from nau_py.diagnostics.diagnostic import warning
 from nau_py.model.effects import ALL, AUTO
 from nau_py.model.raytrace import RaytracePass
+from nau_py.passes.drawing import begin_view, run_process
+from nau_py.passes.frame import FrameContext, Session
 from nau_py.passes.ptx.optix import OptixState
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.rt import RtState
-from nau_py.passes.stages import Stages
+from nau_py.passes.report import PassReport, Stages
 from nau_py.raytrace.ptx.optix.optix6 import STACK_OVERFLOW
 from nau_py.raytrace.ptx.runtime.frame import BUFFER_INDEX, NO_CALLABLE
 from nau_py.raytrace.ptx.runtime.guarded import open_marks
 
 if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, PassRecord, Session
     from nau_py.raytrace.ptx.runtime.launch import Launched
 
 _TOLD = 20
@@ -64,19 +65,18 @@ class PtxState:
         """Do nothing: memory is freed with the state."""
 
 
-def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) -> None:
+def execute_ptx(pass_: RaytracePass, frame: FrameContext) -> PassReport:
     """Launch the pass's programs over its target, or over the pixels that its mask selects."""
-    from nau_py.passes.drawing import process, target_and_rect
     from nau_py.passes.tracing import force_mask, read_inputs, read_mask
     from nau_py.raytrace.ptx.runtime.launch import run_launch
     from nau_py.raytrace.tracing.dispatch import select
 
     session = frame.session
     options = session.options
-    frame.camera = frame.world.camera(pass_.camera_name)
-    target, frame.rect = target_and_rect(pass_, frame, uses_camera=True)
-    process(pass_.preProcess, frame)
-    stages = Stages(record)
+    view = begin_view(pass_, frame, frame.world.camera(pass_.camera_name))
+    target = view.target
+    run_process(pass_.preProcess, frame)
+    stages = Stages()
     pixels = None
     if pass_.mask is not None:
         if options.mask != "project":
@@ -85,7 +85,7 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
         pixels = select(mask, target.width, target.height)
         stages.end("read_back")
     environment = session.state(pass_, PtxState).environment
-    launch = environment.begin(pass_, frame, target)
+    launch = environment.begin(pass_, frame, view)
     launch.indices = pixels
     generate = pass_.rtEntryPoint and pass_.rtEntryPoint.rayGen
     launch.marks = open_marks(
@@ -103,32 +103,38 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext, record: PassRecord) ->
     )
     stages.end("trace")
     odd = environment.odd()
+    blame = ""
     if len(odd):
-        record.nonfinite, first = len(odd), int(odd[0])
-        record.blame = f"; the first at pixel ({first % target.width}, {first // target.width})"
+        first = int(odd[0])
+        blame = f"; the first at pixel ({first % target.width}, {first // target.width})"
     environment.end(pass_, frame, target, pixels)
     stages.end("read_back")
-    process(pass_.postProcess, frame)
-    record.pixels = target.width * target.height if pixels is None else len(pixels)
+    run_process(pass_.postProcess, frame)
     types = environment.types
-    record.rays = {
-        (types[i] if i < len(types) else f"type {i}"): int(n) for i, n in enumerate(done.rays) if n
-    }
-    record.notes += environment.notes()
-    _report(pass_, frame, record, done, target.width)
+    notes = environment.notes() + _report(pass_, frame, done, target.width)
     node = frame.project.file.effects
     effects = options.effects or (node.simulate if node else None) or AUTO
     if effects not in (AUTO, ALL):
-        record.notes.append(
+        notes.append(
             f"compiled programs say themselves which rays they send: effects '{effects}' leave "
             "nothing out here"
         )
+    return PassReport(
+        pixels=target.width * target.height if pixels is None else len(pixels),
+        rays={
+            (types[i] if i < len(types) else f"type {i}"): int(n)
+            for i, n in enumerate(done.rays)
+            if n
+        },
+        nonfinite=len(odd),
+        blame=blame,
+        notes=tuple(notes),
+        stages=stages.ms,
+    )
 
 
-def _report(
-    pass_: RaytracePass, frame: FrameContext, record: PassRecord, done: Launched, width: int
-) -> None:
-    """Exceptions and printed text."""
+def _report(pass_: RaytracePass, frame: FrameContext, done: Launched, width: int) -> list[str]:
+    """Report exceptions as diagnostics; return the printed texts as notes."""
 
     def place(index: int) -> str:
         return f"({index % width}, {index // width})"
@@ -144,7 +150,7 @@ def _report(
             f"launch indices, first at {place(done.first)}: code {code}{what}; {then}"
         )
         frame.session.resources.diagnostics.append(warning("T019", pass_.location, said))
-    for index, text in done.printed[:_TOLD]:
-        record.notes.append(f"printed at {place(index)}: {text.rstrip()}")
+    notes = [f"printed at {place(i)}: {text.rstrip()}" for i, text in done.printed[:_TOLD]]
     if len(done.printed) > _TOLD:
-        record.notes.append(f"… and {len(done.printed) - _TOLD} texts more")
+        notes.append(f"… and {len(done.printed) - _TOLD} texts more")
+    return notes

@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.model.raytrace import GEOMETRY_KINDS, GeometryProgram, RaytracePass
+from nau_py.passes.drawing import camera_context
+from nau_py.passes.frame import FrameContext, Session, View
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
 from nau_py.passes.ptx.variables import UNITS
@@ -19,7 +21,6 @@ from nau_py.raytrace.ptx.optix.optix6 import BUFFER, BUFFER_BYTES, PLAIN, STACK_
 from nau_py.raytrace.ptx.runtime.guarded import open_marks
 
 if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, Session
     from nau_py.raster.targets import Target
     from nau_py.raytrace.ptx.runtime.launch import Launch
     from nau_py.scene.material import RenderMaterial
@@ -132,14 +133,13 @@ class OptixState:
             at = RECORD_HEADER + layout.offsets[name]
             record[at : at + len(data)] = np.frombuffer(data, np.uint8)
 
-    def begin(self, pass_: RaytracePass, frame: FrameContext, target: Target) -> Launch:
+    def begin(self, pass_: RaytracePass, frame: FrameContext, view: View) -> Launch:
         """The launch of a frame; the variables of the programs are written."""
-        from nau_py.passes.drawing import camera_context
         from nau_py.raytrace.ptx.runtime.frame import RECORD_HEADER
 
-        context = camera_context(pass_, frame, target)
+        context, target = camera_context(pass_, frame, view), view.target
         self.resources.begin_frame()
-        values = self._of_context(pass_, frame, target)
+        values = self._of_context(pass_, view)
         for node in pass_.rtGlobalParams:
             values[node.name or ""] = self.resources.packed(node, context)
         for record in [*self.context, *self.misses]:
@@ -173,8 +173,8 @@ class OptixState:
             flush=self.programs.flushes,
         )
 
-    def _of_context(self, pass_: RaytracePass, frame: FrameContext, target: Target) -> Values:
-        camera = frame.camera
+    def _of_context(self, pass_: RaytracePass, view: View) -> Values:
+        camera = view.camera
         vectors = {
             "eye": camera.position,
             "U": camera.right,
@@ -191,7 +191,7 @@ class OptixState:
             if image is not None and variable is not None:
                 texels = image.texels
                 values[source.var or ""] = image.handle if variable.kind == TEXTURE else texels
-        for name, texture in self._targets(pass_, target):
+        for name, texture in self._targets(pass_, view.target):
             values[name] = self._output(name, texture)
         return values
 

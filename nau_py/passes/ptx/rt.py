@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.raytrace import Program, RayMaterial, RaytracePass
+from nau_py.passes.drawing import camera_context, pass_value, viewport_names
+from nau_py.passes.frame import FrameContext, Session, View
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
 from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.ptx.compiler.compile import PARAMETERS
 
 if TYPE_CHECKING:
-    from nau_py.passes.frame import FrameContext, Session
     from nau_py.raster.targets import Target
     from nau_py.raytrace.ptx.optix.records import Group, Surface
     from nau_py.raytrace.ptx.runtime.launch import Launch
@@ -81,11 +82,11 @@ class RtState:
         self.context = record_table(1, 16)
         self.context[0, -16:-12] = np.frombuffer(np.int32(255).tobytes(), np.uint8)
 
-    def begin(self, pass_: RaytracePass, frame: FrameContext, target: Target) -> Launch:
+    def begin(self, pass_: RaytracePass, frame: FrameContext, view: View) -> Launch:
         """The launch of a frame; the parameters of the programs are written."""
         from nau_py.raytrace.ptx.runtime.launch import Launch
 
-        data = self._parameters(pass_, frame, target)
+        data = self._parameters(pass_, frame, view)
         for native in self.programs.natives.values():
             native.set_variable(PARAMETERS, data)
         surfaces = [self._surface(group.material) for group in self.scene.groups]
@@ -95,7 +96,7 @@ class RtState:
             self.scene.records(self._addresses, surfaces, self._used),
             self.misses,
             self.context,
-            (target.width, target.height),
+            (view.target.width, view.target.height),
             len(self.types),
             self.exception,
             callables=np.array(self.programs.callables(), np.uint64),
@@ -119,7 +120,6 @@ class RtState:
     ) -> None:
         """Give the colours to the target. ``pixels``: those that the mask selects; the others get
         the clear value."""
-        from nau_py.passes.drawing import pass_value
         from nau_py.passes.tracing import store_selected
 
         self.resources.give_back()
@@ -148,14 +148,12 @@ class RtState:
             image,
         )
 
-    def _parameters(self, pass_: RaytracePass, frame: FrameContext, target: Target) -> bytes:
+    def _parameters(self, pass_: RaytracePass, frame: FrameContext, view: View) -> bytes:
         """The launch parameters of a frame, 96 bytes."""
-        from nau_py.passes.drawing import camera_context, pass_value, viewport_names
-
-        camera = frame.camera
+        camera, target = view.camera, view.target
         aspect = target.width / target.height
         if viewport_names(pass_):
-            aspect = frame.rect.aspect
+            aspect = view.rect.aspect
         across, up = camera.half_extent(aspect)
         samples = frame.session.options.samples
         rays = samples or int(pass_value(frame.project, pass_, "RAYS_PER_PIXEL"))
@@ -169,7 +167,7 @@ class RtState:
         size = target.width * target.height + _PAD
         if len(self.buffer) != size:
             self.buffer = np.zeros(size, np.uint32)
-        context = camera_context(pass_, frame, target)
+        context = camera_context(pass_, frame, view)
         self.resources.begin_frame()
         values = [self.resources.packed(node, context) for node in pass_.rtGlobalParams]
         # back to back, nothing is aligned; a mistaken struct may read some bytes more
