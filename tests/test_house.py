@@ -144,6 +144,20 @@ def test_one_file_wraps(package: str, home: str) -> None:
     assert users == [home]
 
 
+def test_only_process_starts_processes() -> None:
+    starters = {"subprocess", "multiprocessing", "pty", "_posixsubprocess"}
+    for path in PACKAGE.rglob("*.py"):
+        if path.is_relative_to(PACKAGE / "process"):
+            continue
+        assert not imports(path) & starters, path
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+                name = f"{node.value.id}.{node.attr}"
+                starts = ("os.fork", "os.exec", "os.spawn", "os.posix_spawn", "os.system")
+                assert not name.startswith((*starts, "os.popen", "asyncio.create_subprocess")), path
+            assert getattr(node, "id", "") != "ProcessPoolExecutor", path
+
+
 def test_modules_are_small() -> None:
     lengths = sorted(len(p.read_text().splitlines()) for p in PACKAGE.rglob("*.py"))
     assert lengths[-1] <= 500

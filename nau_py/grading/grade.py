@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -12,11 +11,11 @@ from pathlib import Path
 from threading import Event
 from typing import Any
 
-from nau_py.process.limited import Ended, run_limited
+from nau_py.process.isolation import python_command
+from nau_py.process.limited import LARGEST, Ended, run_limited
 
-_LIMIT = "from nau_py.process.limited import no_large_files; no_large_files(); "
-_RUN = _LIMIT + "from nau_py.cli.run import main; main()"
-_LINT = _LIMIT + "from nau_py.cli.lint import main; main()"
+_RUN = "nau_py.cli.run:main"
+_LINT = "nau_py.cli.lint:main"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +87,8 @@ def grade_one(
 ) -> Result:
     """Lint, then render, one project."""
 
-    def run(code: str, *words: str) -> Ended:
-        command = [sys.executable, "-c", code, *words]
+    def run(entry: str, *words: str) -> Ended:
+        command = python_command(entry, words, LARGEST)
         return run_limited(command, limits.seconds, limits.megabytes, give_up)
 
     linted = run(_LINT, "--format", "json", str(path))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-import sys
 import tempfile
 from pathlib import Path
 from time import monotonic
@@ -16,12 +15,13 @@ from numpy.typing import NDArray
 from nau_py.diagnostics.diagnostic import Diagnostic, error
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import RaytracePass
+from nau_py.process.isolation import isolated_environment, python_command
 from nau_py.raytrace.programs.source import launches_ptx
 from nau_py.raytrace.ptx.runtime.guarded import MARKS, SLOTS
 
 Words = NDArray[np.int64]
 _PERIOD = 0.1
-_COMMAND = "from nau_py.cli.run import main; main()"
+_ENTRY = "nau_py.cli.run:main"
 
 
 def needed(project: Project, programs: str) -> bool:
@@ -45,7 +45,7 @@ def run_guarded(
         file.write_bytes(words.tobytes())
         seen = np.memmap(file, np.int64, "r", shape=(2 * SLOTS,))
         child = subprocess.Popen(
-            [sys.executable, "-c", _COMMAND, *arguments], env=os.environ | {MARKS: str(file)}
+            python_command(_ENTRY, arguments), env=isolated_environment({MARKS: str(file)})
         )
         hung = _wait(child, seen, limit)
         if child.returncode >= 0 and not hung:

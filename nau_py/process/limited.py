@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from time import monotonic, sleep
 
+from nau_py.process.isolation import isolated_environment
+
 POLL = 0.05
 """Seconds between two looks at what a process holds."""
 LONGEST = 4_000_000
@@ -51,6 +53,7 @@ def run_limited(
             stdout=out,
             stderr=err,
             start_new_session=True,
+            env=isolated_environment(),
         )
         stopped = ""
         try:
@@ -73,15 +76,6 @@ def run_limited(
         if not stopped and code is not None and code < 0:
             stopped = f"it crashed ({signal.Signals(-code).name})"
         return Ended(None if stopped else code, took, _tail(out), _tail(err), stopped)
-
-
-def no_large_files() -> None:
-    """In a child process: no file beyond LARGEST. Its output is a file, too."""
-    if os.name != "posix":
-        return
-    import resource
-
-    resource.setrlimit(resource.RLIMIT_FSIZE, (LARGEST, LARGEST))
 
 
 def _tail(file: object) -> str:

@@ -6,6 +6,7 @@ What a project's programs or the driver's compiler do to that process costs noth
 from __future__ import annotations
 
 import multiprocessing
+import os
 import threading
 from collections.abc import Callable
 from multiprocessing.connection import Connection
@@ -96,6 +97,7 @@ class Child:
             mine, theirs = context.Pipe()
             arguments = (str(self.path), self.options, theirs)
             self._process = context.Process(target=run, args=arguments, daemon=True)
+            os.environ["PYTHONSAFEPATH"] = "1"  # a spawned Python inherits the environment
             self._process.start()
             theirs.close()
             self._pipe = mine

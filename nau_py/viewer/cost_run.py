@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
-_COMMAND = "from nau_py.cli.cost import main; main()"
+from nau_py.process.isolation import Process, start_python
+
+_ENTRY = "nau_py.cli.cost:main"
 
 
 class CostRun:
@@ -15,21 +15,14 @@ class CostRun:
 
     def __init__(self, project: Path, folder: Path) -> None:
         self.project, self.folder = project, folder
-        self._process: subprocess.Popen[str] | None = None
+        self._process: Process | None = None
 
     def start(self, pipeline: str) -> None:
         """Measure the files as they are saved; nothing where a measurement is under way."""
         if self._process is not None and self._process.poll() is None:
             return
         options = ["--pipeline", pipeline, "--out", str(self.folder)]
-        log = (self.folder / "log.txt").open("w")
-        self._process = subprocess.Popen(
-            [sys.executable, "-c", _COMMAND, str(self.project), *options],
-            stdout=subprocess.DEVNULL,
-            stderr=log,
-            text=True,
-        )
-        log.close()
+        self._process = start_python(_ENTRY, [str(self.project), *options], self.folder / "log.txt")
 
     def state(self) -> dict[str, Any]:
         """``state``: none, running, done or failed; ``said``: the last lines of its messages."""

@@ -36,7 +36,7 @@ def _cache_folder() -> str:
     return str(folder) if os.access(folder, os.W_OK) else ""
 
 
-_FOLDER = numba.config.CACHE_DIR or _cache_folder()
+_FOLDER = os.environ.get("NUMBA_CACHE_DIR") or _cache_folder()
 """Empty where nothing can be kept: kernels are then compiled in every process."""
 
 
