@@ -61,6 +61,9 @@ def graded(
     file.write_text(file.read_text().replace("<RAYS_PER_PIXEL", "<RAYS_PER_PIXL"))
     (root / "torn").mkdir()
     (root / "torn" / "project.xml").write_text("<project name='torn'><assets")
+    # Compile the kernels first, so that a new cache costs no project its time.
+    compiled = [*RUN, str(root / "raises" / "project.xml"), "-o", str(root.parent / "x.png")]
+    subprocess.run(compiled, capture_output=True, timeout=300, check=False)
     page = root.parent / f"{root.name}.html"
     words = ["--batch", str(root), "--report", str(page), "--time-limit", "8"]
     done = subprocess.run(
