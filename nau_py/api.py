@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from nau_py.diagnostics.diagnostic import Diagnostic, Severity
 from nau_py.model.linked import Project
+from nau_py.passes import pass_classes
 
 if TYPE_CHECKING:
     from nau_py.graph import Plan
@@ -28,7 +29,6 @@ def lint(project: Project, models: bool = False) -> list[Diagnostic]:
     ``models``: load its models too, once nothing else is an error, and add what is wrong with
     them: vertices that are not finite, faces that rays leave out, coordinates too large.
     """
-    from nau_py.passes import pass_classes
     from nau_py.rules.engine import lint as run
     from nau_py.scene.names import default_material_names
 
@@ -46,7 +46,6 @@ def plan(project: Project, pipeline: str | None = None) -> Plan:
     Raises :class:`nau_py.ProjectError` for a pipeline that does not exist.
     """
     from nau_py.graph import make_plan
-    from nau_py.passes import pass_classes
     from nau_py.run.pipeline_choice import choose_pipeline
 
     return make_plan(project, choose_pipeline(project, pipeline), pass_classes())

@@ -40,18 +40,20 @@ _failures: dict[tuple[str, str], str] = {}
 
 
 @lru_cache(maxsize=8)
-def loaded(group: str) -> dict[str, Any]:
-    """Name to object of the plug-ins of a group, loaded once a process."""
+def load_plugins(group: str) -> dict[str, Any]:
+    """Load the plug-ins of a group, once a process; return name to object."""
     found: dict[str, Any] = {}
     for entry in (e for e in _entries() if e.group == group):
         try:
             found[entry.name] = entry.load()
         except Exception as problem:
-            _failures[group, entry.name] = f"{_said(entry)}: {type(problem).__name__}: {problem}"
+            _failures[group, entry.name] = (
+                f"{_describe(entry)}: {type(problem).__name__}: {problem}"
+            )
     return found
 
 
-def _said(entry: EntryPoint) -> str:
+def _describe(entry: EntryPoint) -> str:
     package = f" of package '{entry.dist.name}'" if entry.dist is not None else ""
     return f"plug-in '{entry.name}' ({entry.value}, group {entry.group}){package} cannot be loaded"
 
@@ -69,10 +71,10 @@ def program_files() -> dict[str, Path]:
         try:
             spec = find_spec(entry.module)
         except (ImportError, ValueError) as problem:
-            _failures[PROGRAMS, entry.name] = f"{_said(entry)}: {problem}"
+            _failures[PROGRAMS, entry.name] = f"{_describe(entry)}: {problem}"
             continue
         if spec is None or spec.origin is None:
-            _failures[PROGRAMS, entry.name] = f"{_said(entry)}: there is no such module"
+            _failures[PROGRAMS, entry.name] = f"{_describe(entry)}: there is no such module"
         else:
             found[entry.name] = Path(spec.origin)
     return found

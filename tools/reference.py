@@ -9,7 +9,8 @@ from pathlib import Path
 from nau_py.accuracy.report import schema
 from nau_py.diagnostics.catalogue import RULES
 from nau_py.model.accuracy import KNOBS
-from nau_py.model.attributes import BUILT_IN
+from nau_py.model.attribute import Attribute
+from nau_py.model.attributes import BUILT_IN, PARAMETERS
 from nau_py.model.effects import EFFECTS
 from nau_py.model.library import MaterialLibrary
 from nau_py.model.node import (
@@ -90,6 +91,27 @@ def _children(cls: type[Node]) -> tuple[list[str], list[type[Node]]]:
     return (["", *lines] if lines else []), found
 
 
+def _parameters(cls: type[Node]) -> list[str]:
+    """Return the table of the parameters that passes of a class have."""
+    if cls not in PARAMETERS:
+        return []
+    head = ["", "Parameters, as child tags:", "", "| parameter | type | default | range | unit | |"]
+    return [*head, "|---|---|---|---|---|---|", *(_parameter(p) for p in PARAMETERS[cls])]
+
+
+def _parameter(parameter: Attribute) -> str:
+    default = ", ".join(format_scalar(v) for v in parameter.default)
+    kind, low, high = parameter.type.value, parameter.minimum, parameter.maximum
+    if parameter.values:
+        kind = "one of " + ", ".join(f"`{v}`" for v in parameter.values)
+    if low is not None and high is not None:
+        legal = f"{low:g} to {high:g}"
+    else:
+        legal = f"from {low:g}" if low is not None else f"to {high:g}" if high is not None else ""
+    cells = (f"`{parameter.name}`", kind, default, legal, parameter.unit, _cell(parameter.doc))
+    return f"| {' | '.join(cells)} |"
+
+
 def _sets() -> list[str]:
     lines = ["", "## Attribute sets"]
     for set_ in BUILT_IN.values():
@@ -125,6 +147,7 @@ def reference_page() -> str:
         children, found = _children(cls)
         doc = (cls.__doc__ or "").strip().splitlines()[0]
         lines += ["", f"### {cls.__name__}", "", doc, *_attributes(cls), *children]
+        lines += _parameters(cls)
         if cls is Pass:
             found += PASS_CLASSES.values()
             named = ", ".join(f"`{n}` ({c.__name__})" for n, c in PASS_CLASSES.items())

@@ -10,13 +10,17 @@ from nau_py.model.passes import Pass
 from nau_py.passes.access import add_target
 from nau_py.passes.drawing import resolve_view
 from nau_py.passes.frame import FrameContext
+from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
 
 STRENGTH = 0.5
 """What is left of the light in the corners."""
 
 
-class _Vignette:
+@register_pass("vignette")
+class Vignette(PassClass):
+    """Darkens its render target towards the corners."""
+
     def access(self, project: Project, pass_: Pass) -> Access:
         """Reads its target and draws over it: nothing is cleared."""
         access = Access()
@@ -37,6 +41,3 @@ class _Vignette:
         values[:, :, :3] *= factor[:, :, None]
         texture.write_values(values)
         return PassReport(pixels=width * height)
-
-
-Vignette = _Vignette()

@@ -65,8 +65,8 @@ class Diagnostic:
         return f"{where}{self.severity}[{self.rule}]: {self.message}"
 
 
-def error(rule: str, location: Location, message: str) -> Diagnostic:
-    return Diagnostic(rule, Severity.ERROR, location, message)
+def error(rule: str, location: Location, message: str, fixes: tuple[Fix, ...] = ()) -> Diagnostic:
+    return Diagnostic(rule, Severity.ERROR, location, message, fixes=fixes)
 
 
 def warning(rule: str, location: Location, message: str) -> Diagnostic:

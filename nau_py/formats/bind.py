@@ -84,7 +84,7 @@ class Binder:
     def _inline(
         self, element: Element, key: str, text: str, node: Node, name: str, marker: Inline
     ) -> bool:
-        attribute = self.registry[marker.type].get(key)
+        attribute = self.registry.of(type(node), marker.type).get(key)
         if attribute is None:
             return False
         setting = parse_inline(element, key, attribute, self.problems)
@@ -152,7 +152,7 @@ class Binder:
         return True
 
     def _setting(self, child: Element, node: Node, name: str, marker: Settings) -> bool:
-        attribute = self.registry[marker.type].get(child.tag)
+        attribute = self.registry.of(type(node), marker.type).get(child.tag)
         if attribute is None:
             return False
         setting = parse_setting(child, attribute, self.problems)
@@ -188,7 +188,7 @@ def unbind(node: Node, tag: str, registry: Registry) -> Element:
         elif isinstance(marker, Items | Variants):
             element.children += _items(node, value, marker, registry)
         elif isinstance(marker, Settings):
-            set_ = registry[marker.type]
+            set_ = registry.of(type(node), marker.type)
             element.children += [
                 write_setting(key, setting, set_.attributes[key]) for key, setting in value.items()
             ]

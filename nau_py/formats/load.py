@@ -102,7 +102,7 @@ class Reader:
     def declare(self, element: Element) -> None:
         """Add the user attribute that an ``<attribute>`` element declares, if it is whole."""
         type_, name = element.attributes.get("type", ""), element.attributes.get("name", "")
-        set_ = self.registry.get(type_)
+        set_ = self.registry.common(type_)
         data = element.attributes.get("data", "")
         if set_ is None or not name or name in set_ or data not in DataType.__members__:
             return

@@ -90,7 +90,7 @@ class _Json:
                 required += [key] * marker.required
             elif isinstance(marker, Settings | Inline):
                 open_ = True  # a project can add attributes to a type
-                for attribute in self.registry[marker.type]:
+                for attribute in self.registry.of(cls, marker.type):
                     if not attribute.readonly:
                         properties.setdefault(attribute.name, self._setting(attribute))
             else:
@@ -222,7 +222,7 @@ class _Xsd:
                     open_ = True  # a project can add attributes to a type
                 elif isinstance(marker, Settings):
                     open_ = True
-                    for attribute in self.registry[marker.type]:
+                    for attribute in self.registry.of(cls, marker.type):
                         if not attribute.readonly:
                             text = self._setting(attribute)
                             elements.setdefault(attribute.name, text)

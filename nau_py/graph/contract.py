@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.graph.resource import Resource
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
@@ -37,6 +38,8 @@ class Contract(Protocol):
     """The pure half of a pass class: no context, no execution."""
 
     def access(self, project: Project, pass_: Pass) -> Access: ...
+
+    def faults(self, project: Project, pass_: Pass) -> Iterable[Diagnostic]: ...
 
 
 Contracts = Mapping[str, Contract]

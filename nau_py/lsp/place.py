@@ -101,7 +101,7 @@ def enter(
             if found is not None:
                 return found
         elif isinstance(marker, Settings):
-            attribute = registry[marker.type].get(tag)
+            attribute = registry.of(place.cls, marker.type).get(tag)
             if attribute is not None:
                 return Leaf(attribute)
     return None
@@ -147,6 +147,7 @@ def children(place: Place, registry: Registry) -> list[Entry]:
     """The elements that may stand at a place."""
     if isinstance(place, Leaf):
         return []
+    cls = place.cls if isinstance(place, Inside) else Node
     markers = (
         [("", place.marker)] if isinstance(place, Listing) else list(place.cls.markers().items())
     )
@@ -161,7 +162,7 @@ def children(place: Place, registry: Registry) -> list[Entry]:
         elif isinstance(marker, Variants):
             found += [Entry(tag, _doc(cls)) for tag, cls in marker.classes.items()]
         elif isinstance(marker, Settings):
-            set_ = registry[marker.type]
+            set_ = registry.of(cls, marker.type)
             found += [
                 Entry(a.name, a.doc, attribute=a) for a in set_ if not a.readonly and a.type.in_file
             ]
@@ -189,7 +190,7 @@ def attributes(place: Place, registry: Registry) -> list[Entry]:
         elif isinstance(marker, Inline):
             found += [
                 Entry(a.name, a.doc, attr=_attr_of(a), attribute=a)
-                for a in registry[marker.type]
+                for a in registry.of(place.cls, marker.type)
                 if not a.readonly and a.type.in_file
             ]
     return found

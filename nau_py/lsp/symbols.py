@@ -169,7 +169,7 @@ def _settings(
     project: Project, node: Node, field: str, marker: Settings | Inline
 ) -> Iterator[Symbol]:
     for tag, setting in getattr(node, field).items():
-        attribute = project.registry[marker.type].get(tag)
+        attribute = project.registry.of(type(node), marker.type).get(tag)
         if isinstance(marker, Settings):
             kind = f"attribute of {marker.type}"
             yield Symbol(kind, tag, tag, setting.location, Part.ELEMENT)

@@ -28,6 +28,8 @@ class Attribute:
     """The component names to write: ``xyzw``, ``rgba`` or ``size`` (width, height)."""
     reference: str = ""
     """For a STRING: what it names (``camera``, ``viewport``)."""
+    unit: str = ""
+    """Unit of the number, for documentation."""
 
 
 @dataclass(slots=True)

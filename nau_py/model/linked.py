@@ -41,7 +41,7 @@ class Project:
     problems: list[Problem] = field(default_factory=list)
     sources: dict[str, str] = field(default_factory=dict)
     """Text of every file read, by the name used in locations."""
-    _defaults: dict[tuple[str, str], tuple[Scalar, ...]] = field(
+    _defaults: dict[tuple[type[Node], str, str], tuple[Scalar, ...]] = field(
         default_factory=dict, repr=False, compare=False
     )
 
@@ -111,16 +111,21 @@ class Project:
         """
         parts = node.get(name)
         if parts is None:
-            return self.default(type_, name)
-        return self._resolved(self.registry[type_].attributes[name], parts)
+            return self.default(type_, name, type(node))
+        return self._resolved(self._attribute(type(node), type_, name), parts)
 
-    def default(self, type_: str, name: str) -> tuple[Scalar, ...]:
-        """The default of an attribute; a user attribute's may name a constant."""
-        found = self._defaults.get((type_, name))
+    def _attribute(self, model: type[Node], type_: str, name: str) -> Attribute:
+        own = self.registry.of(model, type_).get(name)
+        return own or self.registry[type_].attributes[name]
+
+    def default(self, type_: str, name: str, model: type[Node] = Node) -> tuple[Scalar, ...]:
+        """Return the default of an attribute of ``type_``, in nodes of ``model``. The default of a
+        user attribute may name a constant."""
+        found = self._defaults.get((model, type_, name))
         if found is None:
-            attribute = self.registry[type_].attributes[name]
+            attribute = self._attribute(model, type_, name)
             found = self._resolved(attribute, attribute.default) if attribute.default else ()
-            self._defaults[type_, name] = found
+            self._defaults[model, type_, name] = found
         return found
 
     def _resolved(self, attribute: Attribute, parts: tuple[Scalar, ...]) -> tuple[Scalar, ...]:

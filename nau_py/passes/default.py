@@ -8,11 +8,13 @@ from nau_py.model.passes import Pass
 from nau_py.passes.access import add_commands, add_maps, add_process, add_target
 from nau_py.passes.drawing import begin_drawing, draw_scenes
 from nau_py.passes.frame import FrameContext
+from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
 
 
-class DefaultClass:
-    """Rasterises scenes into the window or a render target."""
+@register_pass("default")
+class DefaultClass(PassClass):
+    """Draws its scenes with the mapped materials."""
 
     def access(self, project: Project, pass_: Pass) -> Access:
         access = Access()

@@ -2,16 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+from nau_py.diagnostics.diagnostic import Diagnostic, error
+from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.passes.default import DefaultClass
 from nau_py.passes.drawing import begin_drawing, draw_scenes
 from nau_py.passes.frame import FrameContext
 from nau_py.passes.light_camera import frustum_corners, light_camera
+from nau_py.passes.registry import register_pass
 from nau_py.passes.report import PassReport
 
 
+@register_pass("depthmap", "depthmap2")
 class DepthmapClass(DefaultClass):
-    """Rasterises scenes from the first light of the pass."""
+    """Draws depth as the first light sees it."""
+
+    def faults(self, project: Project, pass_: Pass) -> Iterator[Diagnostic]:
+        """Yield the light and the target that class ``depthmap`` lacks."""
+        if pass_.pass_class != "depthmap":
+            return
+        for tag, given in (("light", pass_.lights), ("renderTarget", pass_.renderTarget)):
+            if not given:
+                message = f"depthmap pass '{pass_.name}' needs a <{tag}>"
+                yield error("P003", pass_.location, message)
 
     def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
         eye = frame.world.camera(pass_.camera_name)

@@ -16,14 +16,14 @@ from nau_py.model.linked import Project
 from nau_py.model.passes import Pass, ProcessBuffer, ProcessTexture
 from nau_py.passes.access import buffer, texture
 from nau_py.passes.frame import FrameContext, View
-from nau_py.scene.camera import CameraState
-from nau_py.scene.mesh import F64, Mesh, SceneObject
 from nau_py.scene.viewport import Rect
 
 if TYPE_CHECKING:
     from nau_py.raster.programs import Program
     from nau_py.raster.semantics import DrawContext
+    from nau_py.scene.camera import CameraState
     from nau_py.scene.material import RenderMaterial
+    from nau_py.scene.mesh import F64, Mesh, SceneObject
 
 
 def pass_value(project: Project, pass_: Pass, name: str) -> bool | int | float | str:

@@ -10,15 +10,15 @@ from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.passes.report import PassRecord
 from nau_py.passes.state import PassState, PassStates
-from nau_py.scene.camera import CameraState
-from nau_py.scene.lights import LightState
-from nau_py.scene.mapping import PassMaterials
 from nau_py.scene.viewport import Rect
-from nau_py.scene.world import World
 
 if TYPE_CHECKING:
     from nau_py.raster.resources import Resources
     from nau_py.raster.targets import Target
+    from nau_py.scene.camera import CameraState
+    from nau_py.scene.lights import LightState
+    from nau_py.scene.mapping import PassMaterials
+    from nau_py.scene.world import World
 
 
 @dataclass(slots=True)

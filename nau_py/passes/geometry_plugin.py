@@ -10,6 +10,7 @@ from nau_py.model.passes import Pass
 from nau_py.passes.default import DefaultClass
 from nau_py.passes.drawing import begin_drawing, draw_scenes
 from nau_py.passes.frame import FrameContext
+from nau_py.passes.registry import register_pass
 from nau_py.passes.report import PassReport
 from nau_py.scene.mesh import Group, Mesh, SceneObject, pad4
 from nau_py.scene.readers.model_material import PRIMITIVE_MATERIAL
@@ -27,8 +28,9 @@ def _plane() -> SceneObject:
 BLACK = (0.0, 0.0, 0.0, 0.0)
 
 
+@register_pass("geometryPI")
 class GeometryPluginClass(DefaultClass):
-    """Draws its scenes and a plane, with depth clamping.
+    """Draws its scenes and a plane, with depth clamping, as Nau's sample plug-in does.
 
     As in the plug-in, the window is cleared before the viewport is set, so in black, and the lights
     of the pass are not set: shaders see the default light.

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from nau_py.diagnostics.diagnostic import Diagnostic, error, guess, listing, nearest
 from nau_py.graph.contract import Access
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
-from nau_py.model.mask import MaskPass, ShadowBorderSelector, TextureSelector
+from nau_py.model.mask import MaskPass, PropertySelector, ShadowBorderSelector, TextureSelector
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_process, add_target, texture
 from nau_py.passes.drawing import begin_drawing, camera_context, draw_objects, run_process
 from nau_py.passes.frame import FrameContext, View
+from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
 from nau_py.scene.transforms import to_unit_cube
 
@@ -23,6 +26,8 @@ if TYPE_CHECKING:
     from nau_py.scene.material import RenderMaterial
 
 ITEM_MATERIAL = "__item"
+MASK_FORMATS = ["RGBA32F", "RGBA16F"]
+"""Texel formats that hold a world position and a weight."""
 
 
 def selectors(pass_: MaskPass) -> list[Any]:
@@ -30,8 +35,38 @@ def selectors(pass_: MaskPass) -> list[Any]:
     return [node for top in pass_.select for node in top.walk()]
 
 
-class MaskClass:
+@register_pass("mask")
+class MaskClass(PassClass):
     """Writes world position and weight of each pixel into its render target."""
+
+    model = MaskPass
+
+    def faults(self, project: Project, pass_: Pass) -> Iterator[Diagnostic]:
+        """Yield a target that cannot hold weights, and properties that no material has."""
+        assert isinstance(pass_, MaskPass)
+        owned = project.target_of(pass_)
+        colors = owned[1].colors if owned else []
+        label = f"mask pass '{pass_.name}'"
+        if not colors:
+            message = f"{label} needs a <renderTarget> with a colour texture"
+            yield error("P003", pass_.location, message)
+        elif (colors[0].internalFormat or "RGBA") not in MASK_FORMATS:
+            yield error(
+                "P003",
+                colors[0].where("internalFormat"),
+                f"{label} writes positions to '{colors[0].name}', of format "
+                f"'{colors[0].internalFormat or 'RGBA'}'; {listing(MASK_FORMATS)} holds them",
+            )
+        known = [a.name for a in project.registry["COLOR"]]
+        for node in selectors(pass_):
+            if isinstance(node, PropertySelector) and node.name and node.name not in known:
+                yield error(
+                    "P003",
+                    node.where("name"),
+                    f"{label}: materials have no '{node.name}'; there is {listing(known)}"
+                    f"{nearest(node.name, known)}",
+                    guess(node.where("name"), node.name, known),
+                )
 
     def access(self, project: Project, pass_: Pass) -> Access:
         access = Access()

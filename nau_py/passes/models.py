@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.model.linked import Project
-from nau_py.model.pass_classes import RAYTRACE_CLASSES
+from nau_py.model.raytrace import RaytracePass
 from nau_py.raytrace.tracing.face_faults import face_faults
 from nau_py.raytrace.tracing.geometry import gather
 from nau_py.scene.world import World
@@ -19,7 +19,7 @@ def model_faults(project: Project) -> list[Diagnostic]:
     found = list(world.diagnostics)
     for pipeline in project.pipelines:
         for pass_ in pipeline.passes:
-            if pass_.pass_class in RAYTRACE_CLASSES:
+            if isinstance(pass_, RaytracePass):
                 objects = world.objects(pass_.scene_names)
                 found += face_faults(pass_, objects, gather(objects).dropped)
     return found

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
 
 from nau_py.graph.contract import Access
 from nau_py.model.linked import Project
@@ -11,14 +10,16 @@ from nau_py.model.passes import Pass
 from nau_py.passes.access import add_process, add_target
 from nau_py.passes.drawing import resolve_view
 from nau_py.passes.frame import FrameContext
+from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
 
 MARGIN, LINE, COLUMN = 10, 12, 150
 """Pixels from the upper left corner, from line to line, and from names to times."""
 
 
-class ProfilerClass:
-    """Draws a line of text a pass; clears nothing."""
+@register_pass("profiler")
+class ProfilerClass(PassClass):
+    """Draws timings over the picture, a line of text for each pass."""
 
     def access(self, project: Project, pass_: Pass) -> Access:
         access = Access()
@@ -46,6 +47,8 @@ def _text(
     lines: list[tuple[str, float]], width: int, height: int
 ) -> np.ndarray[tuple[int, int], np.dtype[np.bool_]]:
     """Which pixels the lines cover, (height, width), row 0 at the bottom."""
+    from PIL import Image, ImageDraw, ImageFont
+
     image = Image.new("L", (width, height))
     drawing, font = ImageDraw.Draw(image), ImageFont.load_default()
     for index, (name, ms) in enumerate(lines):

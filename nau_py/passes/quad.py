@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 from nau_py.graph.contract import Access
 from nau_py.model.library import DEFAULT_LIBRARY, qualified
 from nau_py.model.linked import Project
-from nau_py.model.pass_classes import QuadPass
+from nau_py.model.node import Attr, Child, Node
+from nau_py.model.pass_classes import MaterialReference
 from nau_py.model.passes import Pass
 from nau_py.passes.access import add_maps, add_material, add_process, add_target, texture
 from nau_py.passes.drawing import begin_drawing, draw_context, draw_mesh, run_process
 from nau_py.passes.frame import FrameContext
+from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
 from nau_py.scene.primitives import quad
 from nau_py.scene.readers.model_material import QUAD_MATERIAL
@@ -21,8 +23,27 @@ if TYPE_CHECKING:
     from nau_py.scene.material import RenderMaterial
 
 
-class QuadClass:
+class QuadTexture(Node):
+    """A texture to fill the viewport with."""
+
+    name: Annotated[
+        str | None, Attr(doc="Texture.", required=True, ref="texture", library="fromLibrary")
+    ] = None
+    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None
+
+
+class QuadPass(Pass):
+    """Fills its viewport with a texture or a material; the material wins."""
+
+    texture: Annotated[QuadTexture | None, Child(QuadTexture)] = None
+    material: Annotated[MaterialReference | None, Child(MaterialReference)] = None
+
+
+@register_pass("quad")
+class QuadClass(PassClass):
     """Draws one full-viewport quad."""
+
+    model = QuadPass
 
     def access(self, project: Project, pass_: Pass) -> Access:
         access = Access()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +11,15 @@ from numpy.typing import NDArray
 from nau_py.diagnostics.diagnostic import error
 from nau_py.diagnostics.errors import NauError
 from nau_py.graph.contract import Access
+from nau_py.model.attribute import number
 from nau_py.model.library import qualified
 from nau_py.model.linked import Project
-from nau_py.model.pass_classes import RayBuffer, RayQueryPass
-from nau_py.model.passes import Pass
+from nau_py.model.node import Attr, Child, Node
+from nau_py.model.passes import Pass, SceneReference
+from nau_py.model.values import DataType
 from nau_py.passes.access import buffer
 from nau_py.passes.frame import FrameContext, Session
+from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
 
 if TYPE_CHECKING:
@@ -27,8 +30,41 @@ RAY_BYTES, HIT_BYTES = 32, 16
 MISS = -1.0
 
 
-class RayQueryClass:
+class RayBuffer(Node):
+    """A buffer of rays or hits."""
+
+    buffer: Annotated[
+        str | None, Attr(doc="Buffer.", required=True, ref="buffer", library="fromLibrary")
+    ] = None
+    fromLibrary: Annotated[str | None, Attr(doc="Library.", ref="library")] = None
+    queryType: Annotated[
+        str | None, Attr(doc="Kind of query (rays only).", values=("ANY", "CLOSEST"))
+    ] = None
+
+
+class RayCount(Node):
+    """How many rays: a number, or a place in a buffer."""
+
+    value: Annotated[int | str | None, Attr(DataType.INT, "Rays.", constant=True)] = None
+    buffer: Annotated[str | None, Attr(doc="Buffer.", ref="buffer")] = None
+    offset: Annotated[int | None, Attr(DataType.UINT, "Byte offset.")] = None
+
+
+class RayQueryPass(Pass):
+    """Traces a buffer of rays into a buffer of hits (classes optixPrime and embree)."""
+
+    scene: Annotated[SceneReference | None, Child(SceneReference)] = None
+    rays: Annotated[RayBuffer | None, Child(RayBuffer)] = None
+    hits: Annotated[RayBuffer | None, Child(RayBuffer)] = None
+    rayCount: Annotated[RayCount | None, Child(RayCount)] = None
+
+
+@register_pass("optixPrime", "embree")
+class RayQueryClass(PassClass):
     """Traces rays that shaders have written; no program runs at the hits."""
+
+    model = RayQueryPass
+    parameters = (number("RAY_COUNT", DataType.INT, -1, "Rays to trace.", unit="rays"),)
 
     def access(self, project: Project, pass_: Pass) -> Access:
         access = Access()

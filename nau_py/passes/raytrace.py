@@ -10,19 +10,66 @@ from numpy.typing import NDArray
 
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.graph.contract import Access
+from nau_py.model.attribute import choice, flag, number
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.model.raytrace import RaytracePass
+from nau_py.model.values import DataType
 from nau_py.passes.access import add_process, buffer, texture
 from nau_py.passes.drawing import begin_view, pass_value, run_process
 from nau_py.passes.frame import FrameContext
 from nau_py.passes.ptx.faults import ptx_faults
+from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport, Stages
 from nau_py.raytrace.programs.source import launches_ptx
 
 
-class RaytraceClass:
+@register_pass("raytrace", "rt", "optix")
+class RaytraceClass(PassClass):
     """Traces rays through the programs of the pass."""
+
+    model = RaytracePass
+    parameters = (
+        number("RAYS_PER_PIXEL", DataType.INT, 1, "Samples of a pixel.", minimum=1, unit="samples"),
+        number("MAX_DEPTH", DataType.INT, 1, "Longest chain of rays.", minimum=1, unit="rays"),
+        choice(
+            "SAMPLER",
+            "SOBOL",
+            "SOBOL STRATIFIED RANDOM",
+            "nau_py: where built-in ray generation puts the samples of a pixel.",
+        ),
+        number(
+            "TARGET_ERROR",
+            DataType.FLOAT,
+            0.0,
+            "nau_py: above 0, RAYS_PER_PIXEL is the most; pixels stop at this estimated error.",
+            minimum=0.0,
+            unit="root mean square of RGB",
+        ),
+        choice(
+            "TEXTURE_WEIGHTS",
+            "CUDA",
+            "CUDA EXACT",
+            "nau_py: compiled programs read between texels by weights of 8 bits, or exact ones.",
+        ),
+        flag("ACCUMULATE", False, "nau_py: frames add up while camera, mask and lights stay."),
+        number(
+            "LIGHT_SAMPLES",
+            DataType.INT,
+            1,
+            "nau_py: shadow rays from each sample to each area light.",
+            minimum=1,
+            unit="rays",
+        ),
+        number(
+            "OCCLUSION_DISTANCE",
+            DataType.FLOAT,
+            1e30,
+            "nau_py: reach of `ambient_occlusion`.",
+            minimum=0.0,
+            unit="world units",
+        ),
+    )
 
     def access(self, project: Project, pass_: Pass) -> Access:
         access = Access()

@@ -40,7 +40,7 @@ class PassStates:
         of another key is closed and replaced.
         """
         found = self._states.get(name)
-        if found is not None and found[0] is key:
+        if found is not None and found[0] == key:
             return cast(S, found[1])
         if found is not None:
             del self._states[name]
@@ -61,3 +61,16 @@ class PassStates:
         self._states.clear()
         for state in states:
             state.close()
+
+
+class Stateless:
+    """State of a pass that keeps nothing."""
+
+    def reload_shaders(self, files: set[Path]) -> None:
+        """Do nothing."""
+
+    def reload_programs(self) -> None:
+        """Do nothing."""
+
+    def close(self) -> None:
+        """Do nothing."""

@@ -10,7 +10,6 @@ from nau_py.graph.plan import Plan, make_plan
 from nau_py.graph.resource import Resource
 from nau_py.model.attributes.texture import channels
 from nau_py.model.linked import Project
-from nau_py.model.pass_classes import RAYTRACE_CLASSES
 from nau_py.model.passes import Pass
 from nau_py.model.raytrace import RaytracePass
 from nau_py.rules.passes import target_size
@@ -133,7 +132,7 @@ def raytrace_inputs(context: LintContext) -> Iterator[Diagnostic]:
             for name in target_textures(project, p)
         }
         for pass_ in pipeline.passes:
-            if pass_.pass_class in RAYTRACE_CLASSES and isinstance(pass_, RaytracePass):
+            if isinstance(pass_, RaytracePass):
                 yield from _inputs(project, pass_, sized)
 
 

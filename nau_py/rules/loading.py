@@ -15,9 +15,9 @@ import nau_py.rules.references
 import nau_py.rules.syntax
 import nau_py.rules.unsupported
 import nau_py.rules.values  # noqa: F401
-from nau_py.plugins import RULES, loaded
+from nau_py.plugins import RULES, load_plugins
 
 
 def load_rules() -> None:
     """Load the rules of plug-ins. Importing this module registers the built-in ones."""
-    loaded(RULES)
+    load_plugins(RULES)

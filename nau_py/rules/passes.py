@@ -1,4 +1,4 @@
-"""P: what passes need."""
+"""P: pass classes, their parameters, and render targets."""
 
 from __future__ import annotations
 
@@ -6,13 +6,12 @@ from collections.abc import Iterator
 
 from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
+from nau_py.model.attributes import PARAMETERS
 from nau_py.model.linked import Project
-from nau_py.model.mask import MaskPass, PropertySelector
-from nau_py.model.pass_classes import PASS_CLASSES, PLUGIN_CLASSES, ComputePass
+from nau_py.model.pass_classes import PASS_CLASSES
+from nau_py.model.passes import Pass
 from nau_py.model.target import CubeMapAttachment, RenderTarget
 from nau_py.rules.registry import LintContext, check
-
-MASK_FORMATS = ["RGBA32F", "RGBA16F"]
 
 P001 = rule(
     "P001",
@@ -67,95 +66,77 @@ P006 = rule(
 )
 
 
-@check
-def classes(context: LintContext) -> Iterator[Diagnostic]:
-    """Pass classes that do not exist, or not here."""
-    for pipeline in context.project.pipelines:
-        for pass_ in pipeline.passes:
-            name = pass_.pass_class
-            if name in context.contracts:
-                continue
-            known = list(context.contracts)
-            if name in PASS_CLASSES or name in PLUGIN_CLASSES:
-                yield P002.at(
-                    pass_.where("class"),
-                    f"pass '{pass_.name}': class '{name}' is not supported by this version; "
-                    f"supported are {listing(known)}",
-                )
-            else:
-                yield P001.at(
-                    pass_.where("class"),
-                    f"pass '{pass_.name}': class '{name}' is unknown; there is "
-                    f"{listing(known)}{nearest(name, known)}",
-                    fixes=guess(pass_.where("class"), name, known),
-                )
+P007 = rule(
+    "P007",
+    ERROR,
+    "Parameter of another pass class",
+    "Passes of this class do not have the parameter: it would have no effect.",
+    "<pass name='a' class='default'><TARGET_ERROR value='0.1'/></pass>",
+    "<pass name='a' class='raytrace'><TARGET_ERROR value='0.1'/></pass>",
+)
 
 
 @check
-def needs(context: LintContext) -> Iterator[Diagnostic]:
-    """What compute and depthmap passes cannot do without."""
-    for pipeline in context.project.pipelines:
-        for pass_ in pipeline.passes:
-            if isinstance(pass_, ComputePass):
-                yield from _compute(pass_)
-            elif pass_.pass_class == "depthmap":
-                if not pass_.lights:
-                    yield P003.at(pass_.location, f"depthmap pass '{pass_.name}' needs a <light>")
-                if pass_.renderTarget is None:
-                    yield P003.at(
-                        pass_.location, f"depthmap pass '{pass_.name}' needs a <renderTarget>"
-                    )
-            elif isinstance(pass_, MaskPass):
-                yield from _mask(context.project, pass_)
+def check_pass_classes(context: LintContext) -> Iterator[Diagnostic]:
+    """Find pass classes that do not exist, or not in this version."""
+    known = list(context.contracts)
+    for pass_ in _passes(context.project):
+        name = pass_.pass_class
+        if name in context.contracts:
+            continue
+        if name in PASS_CLASSES:
+            yield P002.at(
+                pass_.where("class"),
+                f"pass '{pass_.name}': class '{name}' is not supported by this version; "
+                f"supported are {listing(known)}",
+            )
+        else:
+            yield P001.at(
+                pass_.where("class"),
+                f"pass '{pass_.name}': class '{name}' is unknown; there is "
+                f"{listing(known)}{nearest(name, known)}",
+                fixes=guess(pass_.where("class"), name, known),
+            )
 
 
-def _mask(project: Project, pass_: MaskPass) -> Iterator[Diagnostic]:
-    owned = project.target_of(pass_)
-    colors = owned[1].colors if owned else []
-    if not colors:
-        yield P003.at(
-            pass_.location, f"mask pass '{pass_.name}' needs a <renderTarget> with a colour texture"
-        )
-    elif (colors[0].internalFormat or "RGBA") not in MASK_FORMATS:
-        yield P003.at(
-            colors[0].where("internalFormat"),
-            f"mask pass '{pass_.name}' writes positions to '{colors[0].name}', of format "
-            f"'{colors[0].internalFormat or 'RGBA'}'; {listing(MASK_FORMATS)} holds them",
-        )
-    known = [a.name for a in project.registry["COLOR"]]
-    for top in pass_.select:
-        for node in top.walk():
-            if isinstance(node, PropertySelector) and node.name and node.name not in known:
-                yield P003.at(
-                    node.where("name"),
-                    f"mask pass '{pass_.name}': materials have no '{node.name}'; there is "
-                    f"{listing(known)}{nearest(node.name, known)}",
-                    fixes=guess(node.where("name"), node.name, known),
-                )
+@check
+def check_pass_faults(context: LintContext) -> Iterator[Diagnostic]:
+    """Find the faults that the pass classes themselves report."""
+    for pass_ in _passes(context.project):
+        contract = context.contracts.get(pass_.pass_class)
+        if contract is not None and isinstance(pass_, PASS_CLASSES.get(pass_.pass_class, Pass)):
+            yield from contract.faults(context.project, pass_)
 
 
-def _compute(pass_: ComputePass) -> Iterator[Diagnostic]:
-    material = pass_.material
-    if material is None:
-        yield P003.at(pass_.location, f"compute pass '{pass_.name}' needs a <material>")
-        return
-    for axis in "XYZ":
-        given, source = getattr(material, f"dim{axis}"), getattr(material, f"buffer{axis}")
-        offset = getattr(material, f"offset{axis}")
-        label = f"compute pass '{pass_.name}'"
-        if given is not None and source is not None:
-            message = f"{label}: 'dim{axis}' and 'buffer{axis}' exclude each other"
-            yield P003.at(material.where(f"buffer{axis}"), message)
-        if source is not None and offset is None:
-            message = f"{label}: 'buffer{axis}' needs 'offset{axis}'"
-            yield P003.at(material.where(f"buffer{axis}"), message)
-        unset = given is None and source is None and f"dim{axis}" not in material.unknown_attributes
-        if axis == "X" and unset and f"DIM_{axis}" not in pass_.settings:
-            yield P003.at(material.location, f"{label}: <material> needs 'dimX' or 'bufferX'")
+@check
+def check_parameters(context: LintContext) -> Iterator[Diagnostic]:
+    """Find parameters that passes of another class have."""
+    registry = context.project.registry
+    for pass_ in _passes(context.project):
+        if pass_.pass_class not in PASS_CLASSES:
+            continue  # P001
+        own = registry.of(type(pass_), "PASS")
+        for tag, elements in pass_.unknown_children.items():
+            if tag in own or tag not in registry["PASS"]:
+                continue  # unreadable, or an element that is no parameter: V001, S001
+            owners = [n for n, m in PASS_CLASSES.items() if tag in registry.of(m, "PASS")]
+            names = [p.name for p in PARAMETERS.get(type(pass_), ())]
+            has = f"has {listing(names)}" if names else "has no parameters of its own"
+            message = (
+                f"pass '{pass_.name}': {tag} is a parameter of class {listing(owners)}; class "
+                f"'{pass_.pass_class}' {has}{nearest(tag, own.writable)}"
+            )
+            for element in elements:
+                yield P007.at(element.location, message)
+
+
+def _passes(project: Project) -> Iterator[Pass]:
+    for pipeline in project.pipelines:
+        yield from pipeline.passes
 
 
 def target_size(project: Project, target: RenderTarget) -> tuple[int, int]:
-    """Width and height that the file gives to a render target."""
+    """Return the width and height that the file gives to a render target."""
     width, height = project.value(target, "RENDER_TARGET", "SIZE")
     return int(width), int(height)
 
@@ -179,7 +160,7 @@ def _kinds(project: Project, target: RenderTarget) -> Iterator[Diagnostic]:
 
 @check
 def targets(context: LintContext) -> Iterator[Diagnostic]:
-    """Render targets that cannot be made."""
+    """Find render targets that cannot be made."""
     for library in context.project.libraries[1:]:
         for target in library.renderTargets:
             width, height = target_size(context.project, target)

@@ -13,7 +13,7 @@ from nau_py.rules.registry import LintContext, check
 @check
 def plug_ins(context: LintContext) -> Iterator[Diagnostic]:
     """Plug-ins of passes and rules are loaded before lint; the others are loaded here."""
-    plugins.loaded(plugins.READERS)
+    plugins.load_plugins(plugins.READERS)
     plugins.program_files()
     for message in plugins.failures():
         yield E005.at(context.project.file.location, message)

@@ -11,7 +11,6 @@ from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
 from nau_py.graph.dependencies import build
 from nau_py.graph.resource import Resource
 from nau_py.model.linked import Project
-from nau_py.model.pass_classes import RAYTRACE_CLASSES
 from nau_py.model.raytrace import BUILTIN, Program, RaytracePass
 from nau_py.plugins import PREFIX, program_files
 from nau_py.process.paths import resolve, similar
@@ -202,7 +201,7 @@ def raytrace_passes(project: Project) -> list[tuple[str, RaytracePass]]:
         (pipeline.name or "", p)
         for pipeline in project.pipelines
         for p in pipeline.passes
-        if p.pass_class in RAYTRACE_CLASSES and isinstance(p, RaytracePass)
+        if isinstance(p, RaytracePass)
     ]
 
 
@@ -324,15 +323,6 @@ def compiled_programs(context: LintContext) -> Iterator[Diagnostic]:
             launched = launches_ptx(pass_, folder)
             if known and (launched or stand_in(folder, file) is None):
                 yield from _exports(pass_, file, known, listed, launched)
-
-
-@check
-def compiled_code(context: LintContext) -> Iterator[Diagnostic]:
-    """What of compiled programs cannot be run, by the pass class that runs them."""
-    for _, pass_ in raytrace_passes(context.project):
-        faults = getattr(context.contracts.get(pass_.pass_class), "faults", None)
-        if faults is not None:
-            yield from faults(context.project, pass_)
 
 
 def _exports(

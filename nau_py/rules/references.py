@@ -120,7 +120,7 @@ def references(context: LintContext) -> Iterator[Diagnostic]:
                     yield from _attribute(context, names, node, library, name, marker, value)
             elif isinstance(marker, Settings):
                 for tag, setting in getattr(node, name).items():
-                    attribute = context.project.registry[marker.type].get(tag)
+                    attribute = context.project.registry.of(type(node), marker.type).get(tag)
                     if attribute is not None and attribute.reference:
                         yield from _name(
                             names,

@@ -29,6 +29,7 @@ from nau_py.model.node import (
     Variants,
     file_key,
 )
+from nau_py.model.passes import Pass
 from nau_py.model.physics import PhysicsMaterial
 from nau_py.model.raytrace import VERTEX_ATTRIBUTES
 from nau_py.model.scene import BufferGeometry
@@ -150,7 +151,7 @@ def known_children(node: Node, project: Project) -> list[str]:
         elif isinstance(marker, Variants):
             tags += [marker.wrapper] if marker.wrapper else list(marker.classes)
         elif isinstance(marker, Settings):
-            tags += project.registry[marker.type].writable
+            tags += project.registry.of(type(node), marker.type).writable
     return tags
 
 
@@ -161,7 +162,7 @@ def known_attributes(node: Node, project: Project) -> list[str]:
         if isinstance(marker, Attr):
             found.append(file_key(name, marker))
         elif isinstance(marker, Inline):
-            found += project.registry[marker.type].writable
+            found += project.registry.of(type(node), marker.type).writable
     return found
 
 
@@ -199,6 +200,8 @@ def _unknown_child(project: Project, node: Node, tag: str, child: Element) -> It
     tags = known_children(node, project)
     if tag in tags or _has_setting(node, tag, project):
         return  # repeated or unreadable: X004, V001, V003 or V004 say so
+    if isinstance(node, Pass) and tag in project.registry["PASS"]:
+        return  # a parameter of another pass class: P007
     written = child.source_tag
     ignored = _IGNORED_CHILDREN.get(node.tag, set())
     from_file = isinstance(node, Texture) and node.filename is not None
@@ -220,7 +223,7 @@ def _unknown_child(project: Project, node: Node, tag: str, child: Element) -> It
 
 def _has_setting(node: Node, tag: str, project: Project) -> bool:
     return any(
-        isinstance(marker, Settings) and tag in project.registry[marker.type]
+        isinstance(marker, Settings) and tag in project.registry.of(type(node), marker.type)
         for marker in node.markers().values()
     )
 
@@ -289,7 +292,7 @@ def settings(context: LintContext) -> Iterator[Diagnostic]:
         for name, marker in node.markers().items():
             if isinstance(marker, Settings | Inline):
                 for tag, setting in getattr(node, name).items():
-                    attribute = context.project.registry[marker.type].get(tag)
+                    attribute = context.project.registry.of(type(node), marker.type).get(tag)
                     if attribute is not None:
                         yield from _setting(context.project, node, tag, setting, attribute)
 

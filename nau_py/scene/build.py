@@ -12,7 +12,7 @@ from nau_py.diagnostics.location import Location
 from nau_py.model.library import qualified
 from nau_py.model.linked import Project
 from nau_py.model.scene import BufferGeometry, Geometry, Scene, Terrain
-from nau_py.plugins import READERS, loaded
+from nau_py.plugins import READERS, load_plugins
 from nau_py.process.paths import resolve
 from nau_py.scene import primitives
 from nau_py.scene.mesh import Group, Mesh, SceneObject, merge, pad4, transform_mesh
@@ -153,7 +153,7 @@ class SceneBuilder:
         objects: list[SceneObject] = []
         if folder.exists and folder.best.is_dir():
             for path in sorted(folder.best.iterdir()):
-                if path.suffix.lower() in (*SUFFIXES, *loaded(READERS)):
+                if path.suffix.lower() in (*SUFFIXES, *load_plugins(READERS)):
                     objects += self._read(path, where, swap)
         return objects
 
@@ -175,10 +175,10 @@ class SceneBuilder:
                 objects, materials = [SceneObject(str(path), load_patch(path))], []
             elif suffix == ".xml":
                 objects, materials = self._ogre(path), []
-            elif suffix in loaded(READERS):
-                objects, materials = loaded(READERS)[suffix](path)
+            elif suffix in load_plugins(READERS):
+                objects, materials = load_plugins(READERS)[suffix](path)
             else:
-                known = ", ".join([*SUFFIXES, *loaded(READERS)])
+                known = ", ".join([*SUFFIXES, *load_plugins(READERS)])
                 raise ModelError(f"its format '{suffix}' is not supported (supported: {known})")
         except ModelError as problem:
             line = f":{problem.line}" if problem.line else ""

@@ -24,9 +24,10 @@ from nau_py.diagnostics.errors import NauError
 from nau_py.graph.resource import WINDOW
 from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Setting
-from nau_py.model.pass_classes import ComputePass, RayQueryPass
 from nau_py.model.values import Scalar
+from nau_py.passes.compute import ComputePass
 from nau_py.passes.frame import Progress, RunOptions
+from nau_py.passes.ray_query import RayQueryPass
 from nau_py.reporting.output import exr, png
 from nau_py.reporting.target_picture import difference, encoded, shown, thumbnail, tinted
 from nau_py.run.renderer import Frame, Renderer

@@ -10,7 +10,6 @@ from nau_py.graph.contract import Access
 from nau_py.graph.plan import Plan, make_plan
 from nau_py.graph.resource import WINDOW, Resource
 from nau_py.model.linked import Project
-from nau_py.model.pass_classes import DefaultPass
 from nau_py.model.passes import Mode, Pass
 from nau_py.model.pipeline import Pipeline
 from nau_py.model.project import ProjectFile
@@ -42,7 +41,7 @@ def plan(
     from pathlib import Path
 
     passes: list[Pass] = [
-        DefaultPass(name=n, mode=Mode(value=modes[n]) if n in modes else None) for n in table
+        Pass(name=n, mode=Mode(value=modes[n]) if n in modes else None) for n in table
     ]
     project = Project(Path("p.xml"), ProjectFile(name="P"))
     pipeline = Pipeline(name="Q", passes=passes)

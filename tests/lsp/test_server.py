@@ -73,7 +73,7 @@ def test_the_demo_in_an_editor(demo: Path) -> None:
 
     async def reading(editor: Editor) -> None:
         about = await editor.hover(project, "<MAX", "_DEPTH")
-        assert "Longest chain of rays of a raytrace pass." in about
+        assert "Longest chain of rays." in about
         assert "INT; default 1; at least 1." in about
         about = await editor.hover(project, '<camera name="Sun', 'Eye" />')
         assert about.startswith("**camera `SunEye`** — defined at ")

@@ -114,8 +114,24 @@ def test_the_demos_have_no_finding() -> None:
             "V004 error `TEST_MODE` <TEST_MODE> is read-only; a file cannot set it",
         ),
         (
-            DRAW.format("<RAYS_PER_PIXEL value=0 />"),
+            '<pass name="t" class="raytrace"><RAYS_PER_PIXEL value=0 /></pass>' + DRAW.format(""),
             "V006 error `RAYS_PER_PIXEL` <RAYS_PER_PIXEL> of <pass> is 0; it must be at least 1",
+        ),
+        (
+            DRAW.format("<TARGET_ERROR value='0.1' />"),
+            "P007 error `TARGET_ERROR` pass 'draw': TARGET_ERROR is a parameter of class "
+            "'raytrace', 'rt', 'optix'; class 'default' has no parameters of its own",
+        ),
+        (
+            '<pass name="c" class="compute"><material name="m" fromLibrary="L"/>'
+            '<RAY_COUNT value="2"/></pass>' + DRAW.format(""),
+            "P007 error `RAY_COUNT` pass 'c': RAY_COUNT is a parameter of class 'optixPrime', "
+            "'embree'; class 'compute' has 'DIM_X', 'DIM_Y', 'DIM_Z'",
+        ),
+        (
+            DRAW.format("<DIM_X value='8' /><OCCLUSION_DISTANCE value='1' />"),
+            "P007 error `OCCLUSION_DISTANCE` pass 'draw': OCCLUSION_DISTANCE is a parameter of "
+            "class 'raytrace'",
         ),
         (
             DRAW.format("<lights><light/></lights>"),

@@ -172,10 +172,10 @@ def test_plugin_pass_classes(folder: Folder, monkeypatch: pytest.MonkeyPatch) ->
     from nau_py.graph.resource import WINDOW
     from nau_py.model.passes import Pass
     from nau_py.passes.frame import FrameContext
-    from nau_py.passes.registry import pass_classes
+    from nau_py.passes.registry import PassClass, pass_classes
     from nau_py.passes.report import PassReport
 
-    class Painter:
+    class Painter(PassClass):
         def access(self, *_: object) -> Access:
             return Access(writes=[WINDOW])
 
