@@ -1,16 +1,16 @@
-"""Plug-ins: what other installed packages add, by entry points.
+"""Plug-ins: additions of other installed packages, found by entry points.
 
 ================== ============================ ==========================================
 group              name                         object
 ================== ============================ ==========================================
-nau_py.passes      the pass class               a :class:`~nau_py.passes.registry.PassClass`
+nau_py.passes      any                          a module that registers pass classes
 nau_py.rules       any                          a module that registers rules
 nau_py.readers     the ending, as in ``.tri``   a function of a path, which returns objects
                                                 and materials (:mod:`nau_py.scene.build`)
 nau_py.programs    the name behind ``plugin:``  a module of ray programs
 ================== ============================ ==========================================
 
-A plug-in that cannot be loaded is left out and remembered: lint reports it (rule E005).
+A plug-in that cannot be loaded is left out; lint reports it (rule E005).
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ PASSES, RULES, READERS, PROGRAMS = (
     "nau_py.passes", "nau_py.rules", "nau_py.readers", "nau_py.programs",
 )  # fmt: skip
 PREFIX = "plugin:"
-"""What a ``file`` begins with that names a plug-in's ray programs."""
+"""Prefix of a ``file`` that names the ray programs of a plug-in."""
 
 
 @lru_cache(maxsize=1)
 def _entries() -> list[EntryPoint]:
-    """Every entry point of nau_py's groups: looking through all packages takes a while."""
+    """Return the entry points of nau_py's groups; cached, since reading all packages is slow."""
     groups = (PASSES, RULES, READERS, PROGRAMS)
     everything = entry_points()
     return [entry for group in groups for entry in everything.select(group=group)]
@@ -59,13 +59,13 @@ def _describe(entry: EntryPoint) -> str:
 
 
 def failures() -> list[str]:
-    """What could not be loaded so far, and why."""
+    """Return a message for each plug-in that could not be loaded so far."""
     return list(_failures.values())
 
 
 @lru_cache(maxsize=1)
 def program_files() -> dict[str, Path]:
-    """Name to file of the plug-ins' ray programs. They are found, not loaded."""
+    """Return name to file of the plug-ins' ray programs, without loading them."""
     found: dict[str, Path] = {}
     for entry in (e for e in _entries() if e.group == PROGRAMS):
         try:

@@ -2,53 +2,22 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
-import shutil
-import subprocess
-import sys
-import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 from PIL import Image
 
+import nau_py.plugin
 from tests.conftest import ROOT
-
-EXAMPLE = ROOT / "docs" / "extending"
-
-
-def installed(folder: Path, groups: dict[str, dict[str, str]], name: str) -> None:
-    """What pip leaves of a package's entry points."""
-    info = folder / f"{name}-0.1.0.dist-info"
-    info.mkdir(parents=True)
-    (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 0.1.0\n")
-    lines = []
-    for group, entries in groups.items():
-        lines += [f"[{group}]", *(f"{key} = {value}" for key, value in entries.items()), ""]
-    (info / "entry_points.txt").write_text("\n".join(lines))
+from tests.plugins import EXAMPLE, install, install_example, run
 
 
-@pytest.fixture
-def environment(tmp_path: Path) -> dict[str, str]:
-    """The example package as if it were installed."""
-    declared = tomllib.loads((EXAMPLE / "pyproject.toml").read_text())
-    site = tmp_path / "site"
-    installed(site, declared["project"]["entry-points"], "nau_example")
-    for file in EXAMPLE.glob("nau_example_*.py"):
-        shutil.copy(file, site)
-    return os.environ | {"PYTHONPATH": str(site)}
-
-
-def run(command: str, *arguments: str, env: dict[str, str]) -> subprocess.CompletedProcess[str]:
-    program = str(Path(sys.executable).parent / command)
-    return subprocess.run(
-        [program, *arguments], env=env, capture_output=True, text=True, timeout=120
-    )
-
-
-def test_each_kind_of_plug_in(tmp_path: Path, environment: dict[str, str]) -> None:
+def test_each_kind_of_plug_in(tmp_path: Path) -> None:
+    environment = install_example(tmp_path / "site")
     picture, report = tmp_path / "picture.png", tmp_path / "report.json"
     project = str(EXAMPLE / "project.xml")
     found = run("nau-lint", project, "--format", "json", env=environment)
@@ -87,7 +56,7 @@ def test_a_plug_in_that_does_not_load_is_said(tmp_path: Path) -> None:
         "nau_py.passes": {"broken": "nau_broken:Pass"},
         "nau_py.readers": {".brk": "nau_missing:read"},
     }
-    installed(site, groups, "nau_broken")
+    install(site, groups, "nau_broken")
     (site / "nau_broken.py").write_text("raise RuntimeError('not today')\n")
     env = os.environ | {"PYTHONPATH": str(site)}
     project = str(ROOT / "projects" / "mirror" / "project.xml")
@@ -98,3 +67,64 @@ def test_a_plug_in_that_does_not_load_is_said(tmp_path: Path) -> None:
     assert "plug-in 'broken' (nau_broken:Pass, group nau_py.passes)" in listed[0]
     assert "package 'nau_broken' cannot be loaded: RuntimeError: not today" in listed[0]
     assert "No module named 'nau_missing'" in listed[1]
+
+
+def test_the_surface_of_plug_ins() -> None:
+    assert nau_py.plugin.__all__ == [
+        "ERROR",
+        "NOTE",
+        "WARNING",
+        "Access",
+        "Attribute",
+        "Change",
+        "DataType",
+        "Diagnostic",
+        "Fix",
+        "FrameContext",
+        "Group",
+        "LintContext",
+        "Mesh",
+        "ModelError",
+        "ModelMaterial",
+        "NauError",
+        "Part",
+        "Pass",
+        "PassClass",
+        "PassReport",
+        "PassState",
+        "Project",
+        "SceneObject",
+        "Session",
+        "View",
+        "add_maps",
+        "add_process",
+        "add_target",
+        "begin_drawing",
+        "buffer",
+        "check",
+        "choice",
+        "draw_scenes",
+        "error",
+        "flag",
+        "number",
+        "pad4",
+        "pass_value",
+        "register_pass",
+        "resolve_view",
+        "rule",
+        "run_process",
+        "texture",
+        "vector",
+        "warning",
+    ]
+    for name in nau_py.plugin.__all__:
+        assert getattr(nau_py.plugin, name) is not None
+
+
+def test_the_example_imports_nothing_else() -> None:
+    for path in EXAMPLE.glob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Import):
+                assert not any(alias.name.startswith("nau_py") for alias in node.names), path
+            elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith("nau_py"):
+                assert node.module == "nau_py.plugin", path

@@ -28,6 +28,7 @@ from nau_py.model.passes import Pass
 from nau_py.model.physics import PhysicsLibrary
 from nau_py.model.project import ProjectFile
 from nau_py.model.values import format_scalar
+from nau_py.passes import pass_classes
 from nau_py.process.files import write_text
 from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
 from nau_py.rules.loading import load_rules
@@ -136,6 +137,7 @@ def _sets() -> list[str]:
 
 def reference_page() -> str:
     """The reference of project files and material libraries, Markdown."""
+    pass_classes()  # loads those of plug-ins
     lines = [*_INTRO.splitlines(), "", "## Elements"]
     waiting: list[type[Node]] = [ProjectFile, MaterialLibrary, PhysicsLibrary]
     done: set[type[Node]] = set()

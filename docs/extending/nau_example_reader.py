@@ -6,9 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from nau_py.scene.mesh import Group, Mesh, SceneObject, pad4
-from nau_py.scene.readers.model_error import ModelError
-from nau_py.scene.readers.model_material import ModelMaterial
+from nau_py.plugin import Group, Mesh, ModelError, ModelMaterial, SceneObject, pad4
 
 MATERIAL = "Tri"
 

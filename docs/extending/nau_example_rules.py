@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from nau_py.diagnostics.catalogue import WARNING, rule
-from nau_py.diagnostics.diagnostic import Change, Diagnostic, Fix, Part
-from nau_py.rules.registry import LintContext, check
+from nau_py.plugin import WARNING, Change, Diagnostic, Fix, LintContext, Part, check, rule
 
 Z001 = rule(
     "Z001",
