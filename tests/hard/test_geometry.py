@@ -7,7 +7,7 @@ import pytest
 
 import nau_py
 from nau_py.raytrace.kernels.core.tables import SCENE
-from nau_py.raytrace.kernels.path.batch_memory import departures, surface_points
+from nau_py.raytrace.kernels.path.hit_arrays import compute_surface_points, spawn_rays
 from nau_py.raytrace.tracing.accelerator import Accelerator
 from nau_py.raytrace.tracing.arrays import F32
 from nau_py.raytrace.tracing.geometry import RayGeometry
@@ -36,7 +36,7 @@ def surface(
     record["vertices"], record["triangles"] = made.vertices.ctypes.data, made.triangles.ctypes.data
     position, normal = np.empty((2, len(u), 3), np.float32)
     bound = np.empty(len(u), np.float32)
-    surface_points(record, triangle.astype(np.int32), u, v, position, normal, bound)
+    compute_surface_points(record, triangle.astype(np.int32), u, v, position, normal, bound)
     return position, normal, bound
 
 
@@ -56,7 +56,7 @@ def self_hits(made: RayGeometry, seed: int) -> tuple[int, F32]:
     side = np.sign((direction * normal).sum(axis=1))
     direction *= np.where(side == 0, 1, side)[:, None]
     origin, unit = np.empty((2, RAYS, 3), np.float32)
-    departures(position, normal, bound, direction, origin, unit)
+    spawn_rays(position, normal, bound, direction, origin, unit)
     hits = Accelerator(made).intersect(origin, direction).triangle >= 0
     return int(hits.sum()), np.linalg.norm(origin - position, axis=1).astype(np.float32)
 

@@ -70,10 +70,10 @@ def test_grazing(cosine: float) -> None:
     across = np.cross(normal, rng.standard_normal((len(u), 3)))
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     direction = (across + cosine * normal).astype(np.float32)
-    from nau_py.raytrace.kernels.path.batch_memory import departures
+    from nau_py.raytrace.kernels.path.hit_arrays import spawn_rays
 
     origin, unit = np.empty((2, len(u), 3), np.float32)
-    departures(position, normal, bound, direction, origin, unit)
+    spawn_rays(position, normal, bound, direction, origin, unit)
     assert not Accelerator(plane).occluded(origin, unit).any()
 
 

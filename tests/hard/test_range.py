@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.kernels.path.camera_film import ITEM, accumulate
+from nau_py.raytrace.kernels.path.camera import ITEM
+from nau_py.raytrace.kernels.path.film import update_film
 from nau_py.raytrace.tracing.dispatch import Estimate
 from tests.conftest import PROJECTS, ROOT, Folder
 from tests.raytrace.studio import colour, picture, program, square, studio
@@ -60,7 +61,7 @@ def sums(values: np.ndarray) -> Estimate:  # type: ignore[type-arg]
     items["count"] = len(values)
     radiance = np.ascontiguousarray(np.repeat(values[:, None], 4, axis=1), np.float32)
     bad = np.zeros(2, np.int64)
-    accumulate(
+    update_film(
         radiance,
         items,
         estimate.mean,
@@ -116,7 +117,7 @@ def test_merged_sums() -> None:
     for part in (values[:1234], values[1234:]):
         items["count"] = len(part)
         radiance = np.ascontiguousarray(np.repeat(part[:, None], 4, axis=1), np.float32)
-        accumulate(
+        update_film(
             radiance,
             items,
             estimate.mean,

@@ -7,7 +7,7 @@ import pytest
 
 from nau_py.raytrace.kernels.core.sampling import pcg4d
 from nau_py.raytrace.kernels.core.tables import PATH
-from nau_py.raytrace.kernels.path.camera_film import CAMERA, ITEM, SOBOL, STRATA, generate
+from nau_py.raytrace.kernels.path.camera import CAMERA, ITEM, SOBOL, STRATA, generate_camera_rays
 from nau_py.raytrace.tracing.random import uniform
 from nau_py.raytrace.tracing.ray_texture import RayTexture
 from tests.conftest import Folder
@@ -64,7 +64,7 @@ def sample_points(rule: int, count: int, pixel: int = 123) -> np.ndarray:  # typ
     items = np.zeros(1, ITEM)
     items["pixel"], items["count"] = pixel, count
     queue = np.zeros(count, PATH)
-    generate(camera, 0, rule, round(count**0.5), np.uint32(7), 1000, items, queue)
+    generate_camera_rays(camera, 0, rule, round(count**0.5), np.uint32(7), 1000, items, queue)
     return np.asarray(queue["origin"][:, :2].astype(float) - [pixel, 0])
 
 

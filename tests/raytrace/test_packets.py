@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.kernels.path.camera_film import ITEM
+from nau_py.raytrace.kernels.path.camera import ITEM
 from nau_py.raytrace.tracing.accelerator import Accelerator
-from nau_py.raytrace.tracing.dispatch import _parts, bundle_shift
+from nau_py.raytrace.tracing.dispatch import _parts, packet_shift
 from nau_py.raytrace.tracing.geometry import gather
 from nau_py.scene.world import World
 from tests.conftest import PROJECTS, Folder, RayProject
@@ -118,7 +118,7 @@ def test_tiles_do_not_split_what_is_traced_together(samples: int, tile: int) -> 
     pixels = np.flatnonzero(rng.random(1000) < 0.3)
     items = np.zeros(len(pixels), ITEM)
     items["pixel"], items["count"] = pixels, rng.integers(0, samples + 1, len(pixels))
-    shift = bundle_shift(samples)
+    shift = packet_shift(samples)
     assert samples << shift <= max(16, samples)
     parts = _parts(items, tile, shift)
     assert np.concatenate([np.arange(p.start, p.stop) for p in parts]).tolist() == list(

@@ -210,21 +210,21 @@ class Accelerator:
     def intersect(self, origin: F32, direction: F32, tmax: F32 | None = None) -> Intersections:
         """Nearest hits of float32 (n, 3) rays; ``tmax`` float32 (n,). Rays that are not finite
         hit nothing."""
-        from nau_py.raytrace.kernels.path.batch_memory import intersect
+        from nau_py.raytrace.kernels.intersect.ray_arrays import intersect_rays
 
         n = len(origin)
         found = Intersections(np.empty(n, np.int32), *np.zeros((3, n), np.float32))
         limit = np.array([np.inf] if tmax is None else tmax, np.float32)
         o, d = np.ascontiguousarray(origin, "f4"), np.ascontiguousarray(direction, "f4")
-        intersect(self._record(), o, d, limit, found.triangle, found.u, found.v, found.t)
+        intersect_rays(self._record(), o, d, limit, found.triangle, found.u, found.v, found.t)
         return found
 
     def occluded(self, origin: F32, direction: F32, tmax: F32 | None = None) -> Mask:
         """Whether anything is hit, bool (n,)."""
-        from nau_py.raytrace.kernels.path.batch_memory import occluded
+        from nau_py.raytrace.kernels.intersect.ray_arrays import find_occluded_rays
 
         limit = np.array([np.inf] if tmax is None else tmax, np.float32)
         o, d = np.ascontiguousarray(origin, "f4"), np.ascontiguousarray(direction, "f4")
         found = np.zeros(len(o), bool)
-        occluded(self._record(), o, d, limit, found)
+        find_occluded_rays(self._record(), o, d, limit, found)
         return found

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.model.attributes.color import COLOR
-from nau_py.raytrace.kernels.path import batch_memory as batch
+from nau_py.raytrace.kernels.path import hit_arrays as kernel
 from nau_py.raytrace.tracing.arrays import F32, Mask
 from nau_py.raytrace.tracing.random import uniform
 from nau_py.raytrace.tracing.ray_texture import WHITE, RayTexture
@@ -132,7 +132,9 @@ class Hits:
     def _surface(self) -> tuple[F32, F32, F32]:
         position, face = np.empty((2, len(self), 3), np.float32)
         bound = np.empty(len(self), np.float32)
-        batch.surface_points(self._scene, self.triangle, self.u, self.v, position, face, bound)
+        kernel.compute_surface_points(
+            self._scene, self.triangle, self.u, self.v, position, face, bound
+        )
         return position, face, bound
 
     @cached_property
@@ -152,7 +154,9 @@ class Hits:
         result = np.zeros((len(self), components), np.float32)
         if values is not None:
             kept = np.ascontiguousarray(values)  # lives as long as its address is used
-            batch.attributes(self._scene, kept.ctypes.data, self.triangle, self.u, self.v, result)
+            kernel.interpolate_attributes(
+                self._scene, kept.ctypes.data, self.triangle, self.u, self.v, result
+            )
         return result
 
     def attribute(self, name: str) -> F32:
@@ -167,14 +171,14 @@ class Hits:
         """Unit shading normals, (n, 3): the face normal where a vertex has none."""
         result = np.empty((len(self), 3), np.float32)
         face = self.face_normal
-        batch.shading_normals(self._scene, self.triangle, self.u, self.v, face, result)
+        kernel.compute_shading_normals(self._scene, self.triangle, self.u, self.v, face, result)
         return result
 
     @cached_property
     def facing_normal(self) -> F32:
         """Shading normals turned towards where the ray came from, (n, 3)."""
         result = np.empty((len(self), 3), np.float32)
-        batch.faced(self.normal, self.direction, result)
+        kernel.orient_normals(self.normal, self.direction, result)
         return result
 
     @cached_property
@@ -232,7 +236,7 @@ class Hits:
         if wide.shape not in ((1, 3), (len(self), 3)):
             raise ValueError(f"directions have shape {wide.shape}, not (3,) or ({len(self)}, 3)")
         origin, unit = np.empty((2, len(chosen), 3), np.float32)
-        batch.departures_of(chosen, *self._surface, wide, origin, unit)
+        kernel.spawn_chosen_rays(chosen, *self._surface, wide, origin, unit)
         pixel, sample = self.rays.pixel, self.rays.sample
         limit = tmax if tmax is None else np.broadcast_to(np.asarray(tmax, "f4"), len(self))
         if len(chosen) < len(self):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.raytrace.kernels.path import camera_film as launch
+from nau_py.raytrace.kernels.path import camera as kernel
 from nau_py.raytrace.tracing.arrays import F32
 from nau_py.scene.camera import CameraState
 from nau_py.scene.mesh import F64
@@ -19,7 +19,7 @@ CameraRays = Callable[[F32, F32], tuple[F32, F32]]
 
 def camera_record(camera: CameraState, rect: Rect, centre: F64 | None = None) -> NDArray[Any]:
     """The record of ``camera`` over the viewport ``rect``, relative to ``centre``; shape (1,)."""
-    made = np.zeros(1, launch.CAMERA)
+    made = np.zeros(1, kernel.CAMERA)
     v = camera.values
     made["position"] = camera.position - (0.0 if centre is None else centre)
     made["forward"], made["right"], made["up"] = camera.forward, camera.right, camera.true_up
@@ -48,7 +48,7 @@ def camera_rays(camera: CameraState, rect: Rect, centre: F64 | None = None) -> C
     def rays(x: F32, y: F32) -> tuple[F32, F32]:
         origin = np.empty((len(x), 3), np.float32)
         direction = np.empty((len(x), 3), np.float32)
-        launch.camera_rays(
+        kernel.compute_camera_rays(
             record, np.asarray(x, np.float64), np.asarray(y, np.float64), origin, direction
         )
         return origin, direction

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.core import tables as t
 from nau_py.raytrace.kernels.core.tables import LANES
-from nau_py.raytrace.kernels.path import camera_film as kernel
+from nau_py.raytrace.kernels.path import camera as kernel
+from nau_py.raytrace.kernels.path.film import update_film
 from nau_py.raytrace.programs.batch import THIN_LENS
 from nau_py.raytrace.tracing.arrays import F32
 from nau_py.raytrace.tracing.batches import Launch
@@ -173,7 +174,7 @@ class Work:
                 tracer.dropped(self.label, int(bad.sum()), first)
                 radiance[bad] = self.exception.radiance(launch, total)[bad]
         bad_samples = np.zeros(2, np.int64)
-        kernel.accumulate(
+        update_film(
             radiance,
             items,
             estimate.mean[part],
@@ -212,7 +213,7 @@ class Work:
             return
         queue = tracer.borrow(len(radiance))[: len(radiance)]
         seed = np.uint32(self.scene.settings.seed & 0xFFFFFFFF)
-        kernel.generate(self.camera, lens, rule, side, seed, self.width, items, queue)
+        kernel.generate_camera_rays(self.camera, lens, rule, side, seed, self.width, items, queue)
         tracer.follow(queue, 0, radiance)
         tracer.give_back(queue)
 
@@ -259,7 +260,7 @@ def run_launch(
     found.estimate.taken += items["count"]
     found.taken += int(items["count"].sum())
     suits = PYTHON_TILE if work.scene.tables.record["asks_python"][0] else COMPILED_TILE
-    shift = bundle_shift(int(items["count"].max(initial=1)))
+    shift = packet_shift(int(items["count"].max(initial=1)))
     threads = settings.threads or os.cpu_count() or 1
     tile = settings.tile or _even(int(items["count"].sum()), suits, threads)
     parts = _parts(items, tile, shift)
@@ -278,7 +279,7 @@ def run_launch(
     return found
 
 
-def bundle_shift(samples: int) -> int:
+def packet_shift(samples: int) -> int:
     """Neighbours whose samples are traced together, as a power of two: a packet should be full."""
     return max((LANES // max(samples, 1)).bit_length() - 1, 0)
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.core.tables import TEXTURE
 from nau_py.raytrace.kernels.geometry import texture as kernel
-from nau_py.raytrace.kernels.path.batch_memory import texture_values
+from nau_py.raytrace.kernels.path.hit_arrays import sample_textures
 from nau_py.raytrace.tracing.arrays import F32
 
 WHITE = np.ones(4, np.float32)
@@ -63,5 +63,5 @@ class RayTexture:
         """RGBA float32 (n, 4) in 0..1 at texture coordinates (n, 2 or more)."""
         result = np.empty((len(uv), 4), np.float32)
         coordinates = np.ascontiguousarray(uv, np.float32)
-        texture_values(self.record(0), self.rgba.ctypes.data, coordinates, result)
+        sample_textures(self.record(0), self.rgba.ctypes.data, coordinates, result)
         return result

@@ -14,8 +14,9 @@ from nau_py.raytrace.kernels.core import tables as t
 from nau_py.raytrace.kernels.core.jit import COUNTS_CYCLES, count_cycles
 from nau_py.raytrace.kernels.intersect.any_hit import filter_address
 from nau_py.raytrace.kernels.intersect.embree import CONTEXT, RAY_FLOATS
-from nau_py.raytrace.kernels.path import batch_memory as batch
-from nau_py.raytrace.kernels.path.integrator import advance, march, send
+from nau_py.raytrace.kernels.intersect.ray_arrays import initialize_tile
+from nau_py.raytrace.kernels.path import deferred as kernel
+from nau_py.raytrace.kernels.path.integrator import trace_queue, trace_rays, trace_samples
 from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.tracing.arrays import F32
 from nau_py.raytrace.tracing.batches import Hits, Rays
@@ -39,7 +40,7 @@ _LANES = np.dtype(
     ],
     align=True,
 )
-"""Memory of a bundle."""
+"""Memory of a packet."""
 _CODES = {name: code for code, name in enumerate(t.KINDS)}
 
 
@@ -148,10 +149,10 @@ class Tracer:
         """Load the kernels that follow rays, or compile them: no tile shall pay for it."""
         none, record = np.empty(0, t.PATH), self.scene.tables.record
         tile = self._tile(np.zeros((0, 4), np.float32))
-        advance(record, 0, none, tile)
+        trace_queue(record, 0, none, tile)
         vectors, words = np.zeros((0, 3), np.float32), np.zeros(0, np.uint32)
         limit = np.array([np.inf], np.float32)
-        send(record, 0, vectors, vectors, limit, words, words, 1, t.PRIMARY, 0.0, tile)
+        trace_rays(record, 0, vectors, vectors, limit, words, words, 1, t.PRIMARY, 0.0, tile)
 
     def dropped(self, source: str, count: int, pixel: int) -> None:
         """Note ``count`` samples that are not finite."""
@@ -178,7 +179,7 @@ class Tracer:
         pixel, sample, depth = rays.pixel, rays.sample, rays.depth
 
         def step(tile: NDArray[Any]) -> None:
-            send(
+            trace_rays(
                 record, ray_type, origin, direction, limit, pixel, sample, depth, code, initial,
                 tile,
             )  # fmt: skip
@@ -221,7 +222,7 @@ class Tracer:
             query["filter"] = filter_address()  # compiled only where something is to be asked
         query["scene"] = self.scene.tables.record.ctypes.data
         tile["counts"], tile["viewed"] = counts, self._viewed.ctypes.data
-        batch.prepare(tile)
+        initialize_tile(tile)
         return tile
 
     def march(
@@ -233,7 +234,7 @@ class Tracer:
         radiance: F32,
     ) -> None:
         """Samples of ``items`` by compiled programs alone; ``rule``: lens, sampler, strata."""
-        march(self.scene.tables.record, camera, *rule, width, items, self._tile(radiance))
+        trace_samples(self.scene.tables.record, camera, *rule, width, items, self._tile(radiance))
 
     def follow(
         self, queue: NDArray[Any], ray_type: int, radiance: F32, name: str = "primary"
@@ -241,7 +242,7 @@ class Tracer:
         """Follow the paths of ``queue`` to their ends; add what they bring to ``radiance``."""
 
         def step(tile: NDArray[Any]) -> None:
-            advance(self.scene.tables.record, ray_type, queue, tile)
+            trace_queue(self.scene.tables.record, ray_type, queue, tile)
 
         self._drive(step, len(queue), ray_type, radiance, name)
 
@@ -277,10 +278,10 @@ class Tracer:
         depths = RECURSION_LIMIT + 2
         keys = np.empty(len(paths), np.int32)
         tables = self.scene.tables
-        batch.group_keys(paths, tables.arrays["owner"], materials, depths, keys)
+        kernel.compute_group_keys(paths, tables.arrays["owner"], materials, depths, keys)
         order = np.empty(len(paths), np.int64)
         starts = np.empty((t.OCCLUSION + 1) * depths * materials + 1, np.int64)
-        batch.sort_by(keys, len(starts) - 1, order, starts)
+        kernel.sort_keys(keys, len(starts) - 1, order, starts)
         going: list[NDArray[Any]] = []
         for key in np.flatnonzero(np.diff(starts)):
             group = order[starts[key] : starts[key + 1]]
@@ -299,7 +300,7 @@ class Tracer:
             else:
                 values = self._visibility(paths, group, ray_type)
             bad = np.zeros(2, np.int64)
-            batch.scatter(radiance, paths, group, values, status == t.OCCLUSION, bad)
+            kernel.add_results(radiance, paths, group, values, status == t.OCCLUSION, bad)
             if program is not None:
                 self._rest.blame(program.label, int(bad[0]), int(bad[1]))
         if not going:
@@ -316,7 +317,7 @@ class Tracer:
         n = len(group)
         vectors, numbers = np.empty((2, n, 3), np.float32), np.empty((3, n), np.float32)
         keys, triangle = np.empty((2, n), np.uint32), np.empty(n, np.int32)
-        batch.unpack(paths, group, vectors, numbers, keys, triangle)
+        kernel.unpack_paths(paths, group, vectors, numbers, keys, triangle)
         depth = int(paths["depth"][group[0]])
         (origin, direction), (u, v, distance), (pixel, sample) = vectors, numbers, keys
         rays = Rays(self, origin, direction, pixel, sample, depth, self._type(ray_type))
@@ -338,7 +339,7 @@ class Tracer:
         kept = _rows(paths, np.flatnonzero(accepted))
         ignored = _rows(paths, np.flatnonzero(~accepted))
         kept["status"] = t.SHADE
-        batch.pass_all(self.scene.tables.record, ignored)
+        kernel.continue_paths(self.scene.tables.record, ignored)
         closest = self.scene.tables.arrays["closest"][ray_type, material] != 0
         return [kept, ignored] if closest else [ignored]
 

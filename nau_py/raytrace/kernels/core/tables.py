@@ -211,14 +211,14 @@ TILE = np.dtype(
 )
 """What one thread works with: addresses of Embree's single ray, of its packet, of the packet's
 int32 mask of valid lanes and of the QUERY; of the paths in the lanes (int64) and what they see
-(float32); of the counters, the results (4 float32 a row), the LANES paths of a bundle, those that
+(float32); of the counters, the results (4 float32 a row), the LANES paths of a packet, those that
 wait their turn (``top`` of them), shadow rays (``pending`` of them), and paths that Python must
 answer (``waiting`` of ``capacity``, and one slot for what is too much); ``viewed``: int32 a
 material, 1 where a primary ray met it; ``next``: the path of the queue to follow. Samples of the
 same pixel >> ``shift`` are traced together."""
 
 LANES = 16
-"""Rays of a packet, paths of a bundle."""
+"""Rays, and paths, of a packet."""
 
 SHADOW_RAY = np.dtype(
     [

@@ -1,8 +1,8 @@
-"""The any-hit programs that Embree asks while it traces.
+"""The built-in any-hit programs that Embree calls during traversal, as its filter function.
 
-They stop a ray or let it pass, for each candidate by itself, so that a ray finds its hit in one go
-however many it ignores. What lets a part of the light through is asked afterwards, in the order of
-the hits (``visibility.py``, ``bundle.py``).
+Programs that either stop a ray or let it pass run here, once a candidate hit, so that one traversal
+finds the hit however many candidates are ignored. Programs that let a part of the light pass run
+after traversal, in the order of the hits (``visibility.py``, ``path/run_programs.py``).
 """
 
 from __future__ import annotations
@@ -35,24 +35,24 @@ from nau_py.raytrace.kernels.intersect.embree import (
     SAMPLE,
     TFAR,
 )
-from nau_py.raytrace.kernels.intersect.visibility import opacity
+from nau_py.raytrace.kernels.intersect.visibility import evaluate_opacity
 
 _query_at, _scene_at = record_reader(QUERY), record_reader(SCENE)
 _VALID, _IGNORED = -1, 0
 SAME = 1e-6
-"""Relative difference of distances of what counts as one layer."""
+"""Relative difference of distances below which two ignored hits count as one layer."""
 
 
-def _decide(arguments: Any) -> None:
-    """An RTCFilterFunctionN: takes candidates that are ignored out of the valid ones.
+def _filter_candidates(arguments: Any) -> None:
+    """Invalidate the candidate hits that any-hit programs ignore (an RTCFilterFunctionN).
 
     ``arguments``: address of RTCFilterFunctionNArguments (rtcore_geometry.h): valid, user pointer,
     context, RTCRayN, RTCHitN, N.
     """
     valid, ray = np.uint64(i64(arguments, 0)), np.uint64(i64(arguments, 3))
     candidate = np.uint64(i64(arguments, 4))
-    asked = np.uint64(i64(arguments, 2) - CONTEXT)
-    query = _query_at(asked, 0)
+    address = np.uint64(i64(arguments, 2) - CONTEXT)
+    query = _query_at(address, 0)
     scene = _scene_at(query.scene, 0)
     n = i32(arguments, 10)
     last, code = -1, NONE
@@ -70,18 +70,20 @@ def _decide(arguments: Any) -> None:
         k = DIRECTION * n + lane
         direction = (f32(ray, k), f32(ray, k + n), f32(ray, k + 2 * n))
         own = i32(ray, ID * n + lane)
-        pixel, sample = np.uint32(i32(asked, PIXEL + own)), np.uint32(i32(asked, SAMPLE + own))
-        depth = i32(asked, DEPTH + own)
-        stopped = opacity(scene, query.ray_type, triangle, u, v, direction, pixel, sample, depth)
+        pixel, sample = np.uint32(i32(address, PIXEL + own)), np.uint32(i32(address, SAMPLE + own))
+        depth = i32(address, DEPTH + own)
+        stopped = evaluate_opacity(
+            scene, query.ray_type, triangle, u, v, direction, pixel, sample, depth
+        )
         if stopped <= 0.0:
             put_i32(valid, lane, _IGNORED)
-            distance, last = f32(ray, TFAR * n + lane), f32(asked, IGNORED + own)
-            if abs(distance - last) > SAME * distance:  # an edge of two triangles counts once
+            distance, previous = f32(ray, TFAR * n + lane), f32(address, IGNORED + own)
+            if abs(distance - previous) > SAME * distance:  # an edge of two triangles counts once
                 put_i64(query.counts, CONTINUATION, i64(query.counts, CONTINUATION) + 1)
-            put_f32(asked, IGNORED + own, distance)
+            put_f32(address, IGNORED + own, distance)
 
 
 @lru_cache(maxsize=1)
 def filter_address() -> int:
-    """Where the compiled filter stands, for the QUERY."""
-    return callback(_decide)
+    """Return the address of the compiled filter function, for the QUERY."""
+    return callback(_filter_candidates)

@@ -1,4 +1,4 @@
-"""Shadow rays: collected while a bundle is shaded, then traced together, light by light."""
+"""Shadow rays: collected while a packet is shaded, then traced together, light by light."""
 
 from __future__ import annotations
 
@@ -21,6 +21,11 @@ from nau_py.raytrace.kernels.core.tables import (
     set_ray_origin,
     shadow_at,
 )
+from nau_py.raytrace.kernels.intersect.counters import (
+    add_ray_cycles,
+    check_ray,
+    increment_counter,
+)
 from nau_py.raytrace.kernels.intersect.embree import (
     COHERENT,
     DEPTH,
@@ -28,51 +33,56 @@ from nau_py.raytrace.kernels.intersect.embree import (
     PIXEL,
     SAMPLE,
     TFAR,
-    ask,
-    blocked_packet,
-    fill,
-    narrow,
-    row,
-    whose,
+    is_coherent,
+    key_lane,
+    occlude_packet,
+    prepare_query,
+    read_row,
+    write_ray,
 )
 from nau_py.raytrace.kernels.intersect.visibility import (
-    count,
-    shadow_type_of,
-    sound,
-    spent,
-    visibility,
+    shadow_ray_type,
+    trace_visibility,
 )
 
 
 @inner
-def see(scene: Any, tile: Any, ray_type: int, lanes: int) -> None:
-    """What the first ``lanes`` rays of the packet see, 0 to 1, into ``tile.seen``."""
+def trace_packet_visibility(scene: Any, tile: Any, ray_type: int, lanes: int) -> None:
+    """Write the visibility (0 to 1) of the first ``lanes`` rays of the packet to ``tile.seen``."""
     packet, begun = tile.packet, read_cycles()
-    if i8(scene.has_any_hit, ray_type) <= DECIDED and narrow(packet, lanes):
-        blocked_packet(scene, tile, ask(scene, tile, ray_type, COHERENT), lanes)
+    if i8(scene.has_any_hit, ray_type) <= DECIDED and is_coherent(packet, lanes):
+        occlude_packet(scene, tile, prepare_query(scene, tile, ray_type, COHERENT), lanes)
         for lane in range(lanes):
-            put_f32(tile.seen, lane, 0.0 if row(packet, TFAR, lane) < 0.0 else 1.0)
-        spent(tile, begun)
+            put_f32(tile.seen, lane, 0.0 if read_row(packet, TFAR, lane) < 0.0 else 1.0)
+        add_ray_cycles(tile, begun)
         return
     for lane in range(lanes):
-        origin = (row(packet, 0, lane), row(packet, 1, lane), row(packet, 2, lane))
+        origin = (read_row(packet, 0, lane), read_row(packet, 1, lane), read_row(packet, 2, lane))
         direction = (
-            row(packet, DIRECTION, lane),
-            row(packet, DIRECTION + 1, lane),
-            row(packet, DIRECTION + 2, lane),
+            read_row(packet, DIRECTION, lane),
+            read_row(packet, DIRECTION + 1, lane),
+            read_row(packet, DIRECTION + 2, lane),
         )
         pixel = np.uint32(i32(tile.query, PIXEL + lane))
         sample = np.uint32(i32(tile.query, SAMPLE + lane))
         depth = i32(tile.query, DEPTH + lane)
-        seen = visibility(
-            scene, tile, ray_type, origin, direction, row(packet, TFAR, lane), pixel, sample, depth
+        seen = trace_visibility(
+            scene,
+            tile,
+            ray_type,
+            origin,
+            direction,
+            read_row(packet, TFAR, lane),
+            pixel,
+            sample,
+            depth,
         )
         put_f32(tile.seen, lane, seen)
-    spent(tile, begun)
+    add_ray_cycles(tile, begun)
 
 
 @inner
-def collect(
+def collect_shadow_ray(
     scene: Any,
     tile: Any,
     ray_type: int,
@@ -83,11 +93,11 @@ def collect(
     tmax: float,
     light: V3,
 ) -> None:
-    """Add ``light`` to the result of ``path`` as far as a ray from ``origin`` gets through."""
-    if not sound(tile, origin, direction):
+    """Queue a shadow ray. Its visibility times ``light`` is added to the result of ``path``."""
+    if not check_ray(tile, origin, direction):
         return
     if tile.pending == SHADOWS:
-        flush(scene, tile, ray_type)
+        trace_shadow_rays(scene, tile, ray_type)
     entry = shadow_at(tile.shadows, tile.pending)
     tile.pending += 1
     set_ray_origin(entry, origin)
@@ -102,36 +112,37 @@ def collect(
 
 
 @inner
-def flush(scene: Any, tile: Any, ray_type: int) -> None:
-    """Trace what was collected, and add what arrives. Rays to one light go together."""
-    todo = tile.pending
+def trace_shadow_rays(scene: Any, tile: Any, ray_type: int) -> None:
+    """Trace the queued shadow rays, those to one light together, and add the light that arrives."""
+    pending = tile.pending
     tile.pending = 0
-    asks = shadow_type_of(scene, ray_type)
-    left, source = todo, 0
+    shadow_type = shadow_ray_type(scene, ray_type)
+    left, source = pending, 0
     while left > 0:
         lanes = 0
-        for k in range(todo):
+        for k in range(pending):
             entry = shadow_at(tile.shadows, k)
             if entry.source != source:
                 continue
             origin, direction = ray_origin_of(entry), ray_heading_of(entry)
-            fill(tile.packet, LANES, lanes, origin, direction, float(entry.tmax))
-            whose(tile, lanes, entry.pixel, entry.sample, entry.depth)
+            write_ray(tile.packet, LANES, lanes, origin, direction, float(entry.tmax))
+            key_lane(tile, lanes, entry.pixel, entry.sample, entry.depth)
             put_i64(tile.lanes, lanes, k)
-            count(tile, SHADOW)
+            increment_counter(tile, SHADOW)
             left -= 1
             lanes += 1
             if lanes == LANES:
-                _arrive(scene, tile, asks, lanes)
+                _add_unoccluded_light(scene, tile, shadow_type, lanes)
                 lanes = 0
         if lanes > 0:
-            _arrive(scene, tile, asks, lanes)
+            _add_unoccluded_light(scene, tile, shadow_type, lanes)
         source += 1
 
 
 @inner
-def _arrive(scene: Any, tile: Any, asks: int, lanes: int) -> None:
-    see(scene, tile, asks, lanes)
+def _add_unoccluded_light(scene: Any, tile: Any, ray_type: int, lanes: int) -> None:
+    """Trace the shadow rays in the first ``lanes`` lanes and add the light that arrives."""
+    trace_packet_visibility(scene, tile, ray_type, lanes)
     for lane in range(lanes):
         seen = f32(tile.seen, lane)
         if seen > 0.0:

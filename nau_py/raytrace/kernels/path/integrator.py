@@ -1,4 +1,4 @@
-"""The engine's inner loops: paths are taken in bundles and followed to their ends."""
+"""The integrator: loops that follow paths to their ends, a packet at a time."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from nau_py.raytrace.kernels.core.tables import (
     set_heading,
     set_origin,
 )
-from nau_py.raytrace.kernels.path.camera_film import reset, start
-from nau_py.raytrace.kernels.path.packet import follow
+from nau_py.raytrace.kernels.path.camera import reset_path, start_camera_path
+from nau_py.raytrace.kernels.path.packet import trace_packet
 
 
 @inner
-def keep(tile: Any, saved: NDArray[Any]) -> None:
-    """Note the counters, in case what follows must be undone."""
+def save_counters(tile: Any, saved: NDArray[Any]) -> None:
+    """Save the counters, in case the paths of a packet must be traced again."""
     for k in range(COUNTERS):
         saved[k] = i64(tile.counts, k)
 
 
 @inner
-def undo(tile: Any, first: int, waiting: int, saved: NDArray[Any]) -> None:
-    """Back to where ``keep`` was called, to be done again from ``first`` on."""
+def restore_counters(tile: Any, first: int, waiting: int, saved: NDArray[Any]) -> None:
+    """Restore the counters of ``save_counters``, to trace again from path ``first`` on."""
     for k in range(COUNTERS):
         put_i64(tile.counts, k, saved[k])
     tile.next = first
@@ -38,17 +38,17 @@ def undo(tile: Any, first: int, waiting: int, saved: NDArray[Any]) -> None:
 
 
 @kernel
-def advance(
+def trace_queue(
     scenes: NDArray[Any],
     ray_type: int,
     queue: NDArray[Any],
     tiles: NDArray[Any],
 ) -> None:
-    """Follow the paths of ``queue`` from ``next`` on; add what they bring to the radiance.
+    """Follow the paths of ``queue`` from ``tile.next`` on and add their radiance to the results.
 
     ``scenes`` and ``tiles`` hold one record each. Paths of the same pixels are followed together.
-    Where the queue for Python is full, what these paths did is undone, ``next`` is the first of
-    them, and the kernel returns.
+    If the queue for Python is full, the results of these paths are undone, ``tile.next`` is set to
+    the first of them, and the kernel returns.
     """
     scene, tile = scenes[0], tiles[0]
     size = queue.shape[0]
@@ -57,7 +57,7 @@ def advance(
     first = tile.next
     while first < size:
         waiting = tile.waiting
-        keep(tile, saved)
+        save_counters(tile, saved)
         key = queue[first].pixel >> tile.shift
         stop = first
         while stop < size and queue[stop].pixel >> tile.shift == key:
@@ -65,22 +65,22 @@ def advance(
                 before[stop, k] = f32(tile.radiance, 4 * queue[stop].index + k)
             stop += 1
         for begin in range(first, stop, LANES):
-            bundle = min(stop - begin, LANES)
-            for which in range(bundle):
-                copy_path(path_at(tile.work, which), queue[begin + which])
-            follow(scene, tile, ray_type, bundle)
+            packet = min(stop - begin, LANES)
+            for k in range(packet):
+                copy_path(path_at(tile.work, k), queue[begin + k])
+            trace_packet(scene, tile, ray_type, packet)
         if tile.waiting > tile.capacity:
             for i in range(first, stop):
                 for k in range(4):
                     put_f32(tile.radiance, 4 * queue[i].index + k, before[i, k])
-            undo(tile, first, waiting, saved)
+            restore_counters(tile, first, waiting, saved)
             return
         first = stop
     tile.next = size
 
 
 @kernel
-def send(
+def trace_rays(
     scenes: NDArray[Any],
     ray_type: int,
     origin: NDArray[np.float32],
@@ -93,24 +93,26 @@ def send(
     initial: float,
     tiles: NDArray[Any],
 ) -> None:
-    """``advance`` for the rays that a Python program sends: ray i brings result i. ``tmax`` has one
-    entry, or one a ray."""
+    """Do ``trace_queue`` for the rays of a Python program: ray i adds to result i.
+
+    ``origin`` and ``direction`` float32 (n, 3); ``tmax`` has one entry, or one a ray.
+    """
     scene, tile = scenes[0], tiles[0]
     size = origin.shape[0]
     saved = np.empty(COUNTERS, np.int64)
     first = tile.next
     while first < size:
         waiting = tile.waiting
-        keep(tile, saved)
+        save_counters(tile, saved)
         key = pixel[first] >> tile.shift
         stop = first
         while stop < size and pixel[stop] >> tile.shift == key:
             stop += 1
         for begin in range(first, stop, LANES):
-            bundle = min(stop - begin, LANES)
-            for which in range(bundle):
-                path, i = path_at(tile.work, which), begin + which
-                reset(path)
+            packet = min(stop - begin, LANES)
+            for k in range(packet):
+                path, i = path_at(tile.work, k), begin + k
+                reset_path(path)
                 set_origin(path, (origin[i, 0], origin[i, 1], origin[i, 2]))
                 set_heading(path, (direction[i, 0], direction[i, 1], direction[i, 2]))
                 path.tmax = tmax[i if tmax.shape[0] > 1 else 0]
@@ -120,18 +122,18 @@ def send(
                 path.depth = depth
                 path.kind = kind
                 path.initial = initial
-            follow(scene, tile, ray_type, bundle)
+            trace_packet(scene, tile, ray_type, packet)
         if tile.waiting > tile.capacity:
             for i in range(4 * first, 4 * stop):
                 put_f32(tile.radiance, i, 0.0)
-            undo(tile, first, waiting, saved)
+            restore_counters(tile, first, waiting, saved)
             return
         first = stop
     tile.next = size
 
 
 @kernel
-def march(
+def trace_samples(
     scenes: NDArray[Any],
     cameras: NDArray[Any],
     lens: int,
@@ -141,7 +143,7 @@ def march(
     items: NDArray[Any],
     tiles: NDArray[Any],
 ) -> None:
-    """``generate`` and ``advance`` in one, for programs that are all compiled: no queue."""
+    """Generate and follow the camera rays of ``items`` without a queue; no program is Python's."""
     scene, tile = scenes[0], tiles[0]
     at, size, i, taken = 0, 0, 0, 0
     count = items.shape[0]
@@ -150,14 +152,16 @@ def march(
         if taken < items[i].count:
             path = path_at(tile.work, size)
             number = int(items[i].first) + taken
-            start(cameras[0], lens, rule, side, scene.seed, width, flat, number, at, path)
+            start_camera_path(
+                cameras[0], lens, rule, side, scene.seed, width, flat, number, at, path
+            )
             at += 1
             size += 1
             taken += 1
         if taken >= items[i].count:
             i += 1
             taken = 0
-        apart = i == count or int(items[i].pixel) >> tile.shift != flat >> tile.shift
-        if size == LANES or apart:
-            follow(scene, tile, 0, size)
+        last_of_group = i == count or int(items[i].pixel) >> tile.shift != flat >> tile.shift
+        if size == LANES or last_of_group:
+            trace_packet(scene, tile, 0, size)
             size = 0

@@ -39,7 +39,9 @@ from nau_py.raytrace.kernels.geometry.surface import (
     locate_point,
     offset_origin,
 )
-from nau_py.raytrace.kernels.intersect.visibility import skips
+from nau_py.raytrace.kernels.intersect.counters import (
+    is_skipped,
+)
 from nau_py.raytrace.kernels.shading.direct import (
     add_light,
     add_radiance,
@@ -104,7 +106,7 @@ def sample_emitters(
         return
     pdf = area * distance2 / far
     factor = near / pdf
-    if not skips(scene, INDIRECT):
+    if not is_skipped(scene, INDIRECT):
         factor *= weigh_strategies(pdf, near * INVERSE_PI)
     emission = emission_of(material_at(scene.materials, i32(scene.owner, triangle)))
     brought = scale(multiply(brdf, emission), factor)

@@ -1,7 +1,7 @@
 """Shading that ends a path: the default look, Phong, lights with shape, ambient occlusion.
 
-Shadow rays are not traced here: they are collected for the bundle (``shadows.py``), or, where
-their programs are Python's, go to the deferred queue with the light that they would bring.
+Shadow rays are not traced here: they are queued for the packet (``intersect/shadow_rays.py``) or,
+if their programs are Python's, deferred together with the light that they would bring.
 """
 
 from __future__ import annotations
@@ -44,15 +44,14 @@ from nau_py.raytrace.kernels.core.vec import (
 )
 from nau_py.raytrace.kernels.geometry.surface import face_forward, offset_origin
 from nau_py.raytrace.kernels.geometry.texture import RGBA
-from nau_py.raytrace.kernels.intersect.embree import INFINITE
-from nau_py.raytrace.kernels.intersect.shadow_rays import collect
-from nau_py.raytrace.kernels.intersect.visibility import (
-    count,
-    shadow_type_of,
-    skips,
-    sound,
-    visibility,
+from nau_py.raytrace.kernels.intersect.counters import (
+    check_ray,
+    increment_counter,
+    is_skipped,
 )
+from nau_py.raytrace.kernels.intersect.embree import INFINITE
+from nau_py.raytrace.kernels.intersect.shadow_rays import collect_shadow_ray
+from nau_py.raytrace.kernels.intersect.visibility import shadow_ray_type, trace_visibility
 from nau_py.raytrace.kernels.shading.lights import sample_light
 
 AMBIENT_FACTOR = 0.3
@@ -116,20 +115,20 @@ def add_light(
         return
     w, c = weight_of(path), select_band(path, light)
     arriving = (w[0] * c[0], w[1] * c[1], w[2] * c[2])
-    if skips(scene, SHADOW):
-        count(tile, SKIPPED + SHADOW)
+    if is_skipped(scene, SHADOW):
+        increment_counter(tile, SKIPPED + SHADOW)
         at = 4 * path.index
         for k in range(3):
             put_f32(tile.radiance, at + k, f32(tile.radiance, at + k) + arriving[k])
         return
-    if i8(scene.deferred_shadows, shadow_type_of(scene, ray_type)) != 0:
+    if i8(scene.deferred_shadows, shadow_ray_type(scene, ray_type)) != 0:
         late = defer_path(tile, path, OCCLUSION)
         set_origin(late, origin)
         set_heading(late, direction)
         late.tmax = tmax
         set_weight(late, (arriving[0], arriving[1], arriving[2], 0.0))
         return
-    collect(scene, tile, ray_type, path, source, origin, direction, tmax, arriving)
+    collect_shadow_ray(scene, tile, ray_type, path, source, origin, direction, tmax, arriving)
 
 
 @inner
@@ -247,15 +246,15 @@ def sample_occlusion(
         if not dot(geometric, to) > 0.0:
             continue
         origin = offset_origin(position, face, bound, to)
-        if not sound(tile, origin, to):
+        if not check_ray(tile, origin, to):
             continue
-        if skips(scene, AMBIENT):
-            count(tile, SKIPPED + AMBIENT)
+        if is_skipped(scene, AMBIENT):
+            increment_counter(tile, SKIPPED + AMBIENT)
             open_ += 1.0
             continue
-        count(tile, AMBIENT)
-        open_ += visibility(
-            scene, tile, shadow_type_of(scene, ray_type), origin, to,
+        increment_counter(tile, AMBIENT)
+        open_ += trace_visibility(
+            scene, tile, shadow_ray_type(scene, ray_type), origin, to,
             float(scene.occlusion_distance), path.pixel, path.sample, int(path.depth),
         )  # fmt: skip
     add_radiance(tile, path, scale(albedo, open_ / samples), 1.0)
