@@ -28,7 +28,8 @@ from nau_py.version import __version__
 if TYPE_CHECKING:
     from nau_py.graph import Plan
     from nau_py.passes.frame import RunOptions
-    from nau_py.run.renderer import Frame, Renderer
+    from nau_py.run.frame import Frame
+    from nau_py.run.renderer import Renderer
 
 __all__ = [
     "DeviceError",
@@ -52,7 +53,7 @@ __all__ = [
 ]
 
 _LAZY = {
-    "Frame": "nau_py.run.renderer",
+    "Frame": "nau_py.run.frame",
     "Plan": "nau_py.graph",
     "Renderer": "nau_py.run.renderer",
     "RunOptions": "nau_py.passes.frame",

@@ -12,7 +12,8 @@ from nau_py.graph.export import to_svg
 from nau_py.model.linked import Project
 from nau_py.process.files import write_bytes, write_text
 from nau_py.reporting.output import png
-from nau_py.run.renderer import Frame, Renderer
+from nau_py.run.frame import Frame
+from nau_py.run.renderer import Renderer
 
 
 def sample_projects(root: Path) -> list[Path]:

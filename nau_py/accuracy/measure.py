@@ -17,7 +17,8 @@ from nau_py.graph.resource import WINDOW
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
 from nau_py.passes.frame import RunOptions
-from nau_py.run.renderer import Frame, Renderer
+from nau_py.run.frame import Frame
+from nau_py.run.renderer import Renderer
 
 STAGES = ("raster", "trace", "shade", "build", "read_back", "other")
 """Stages of a frame; ``set_up`` comes once, before the first."""

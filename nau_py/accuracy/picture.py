@@ -13,7 +13,7 @@ from nau_py.model.pipeline import Pipeline
 from nau_py.model.raytrace import component
 
 if TYPE_CHECKING:
-    from nau_py.run.renderer import Frame
+    from nau_py.run.frame import Frame
 
 
 def picture(frame: Frame, shown: bool) -> F64:

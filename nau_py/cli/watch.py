@@ -12,8 +12,9 @@ from nau_py.cli.common import say
 from nau_py.diagnostics.errors import NauError
 from nau_py.model.linked import Project
 from nau_py.reporting.output import write_image
+from nau_py.run.frame import Frame
 from nau_py.run.reload import Watch
-from nau_py.run.renderer import Frame, Renderer
+from nau_py.run.renderer import Renderer
 
 PERIOD = 0.02
 """Seconds between two looks at the files."""

@@ -1,4 +1,4 @@
-"""Attributes by name while a project runs: Lua's getAttr and setAttr (docs/format.md, 12)."""
+"""Attributes of a running project by name: Lua's getAttr and setAttr (docs/format.md, 12)."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ SETTABLE = ("RENDERER", "PASS", "CAMERA", "LIGHT", "VIEWPORT", "COLOR", "IMAGE_T
 
 
 class Attributes:
-    """Reads and writes attributes of a running project; raises ValueError with the names that
-    there are. What is changed in the project's own nodes is put back by :meth:`restore`."""
+    """Reads and writes attributes of a running project. :meth:`restore` undoes the changes in the
+    nodes of the project."""
 
     def __init__(self, project: Project) -> None:
         self.project = project
@@ -31,7 +31,8 @@ class Attributes:
     def get(
         self, frame: FrameContext, pass_: Pass, type_: str, name: str, component: str, index: int
     ) -> list[float]:
-        """The numbers of an attribute; matrices column by column."""
+        """Return the numbers of an attribute, matrices column by column. Raises ValueError for an
+        unknown name."""
         from nau_py.raster.semantics import resolve
 
         if type_ == "IMAGE_TEXTURE" and component != "UNIT":
@@ -56,7 +57,10 @@ class Attributes:
         index: int,
         values: Sequence[Scalar],
     ) -> None:
-        """Write an attribute. Neither read-only flags nor ranges are checked, as in Nau."""
+        """Write an attribute. Raises ValueError for an unknown name.
+
+        Neither read-only flags nor ranges are checked, as in Nau.
+        """
         if type_ not in SETTABLE:
             raise ValueError(
                 f"attributes of {type_} cannot be set, those of {listing(SETTABLE)} can"
@@ -86,7 +90,7 @@ class Attributes:
             material.images[index] = ImageBinding(image.texture, tuple(settings.items()))
 
     def restore(self) -> None:
-        """Undo what was written into the project's nodes."""
+        """Undo the changes in the nodes of the project."""
         for node, name, before in reversed(self._changed):
             if before is None:
                 node.settings.pop(name, None)
@@ -162,7 +166,7 @@ def _storage(frame: FrameContext, name: str, offset: int, size: int) -> Any:
 
 
 def get_buffer(frame: FrameContext, name: str, offset: int, type_: str) -> list[float]:
-    """One value at a byte offset. Raises ValueError."""
+    """Return one value at a byte offset. Raises ValueError outside the buffer."""
     dtype, count = _layout(type_)
     size = dtype.itemsize * count
     raw = _storage(frame, name, offset, size).read(size, offset=offset)
@@ -172,7 +176,7 @@ def get_buffer(frame: FrameContext, name: str, offset: int, type_: str) -> list[
 def set_buffer(
     frame: FrameContext, name: str, offset: int, type_: str, values: list[float]
 ) -> None:
-    """Write one value at a byte offset. Raises ValueError."""
+    """Write one value at a byte offset. Raises ValueError outside the buffer."""
     dtype, count = _layout(type_)
     whole = np.zeros(count, dtype)
     whole[: len(values)] = np.array(values[:count]).astype(dtype)

@@ -1,4 +1,4 @@
-"""What a project's ``interface`` lets a user change (docs/format.md, 4.8), by name."""
+"""Parameters that a project's ``interface`` lets a user change (docs/format.md, 4.8), by name."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Parameter:
 
 
 def parameters(project: Project) -> list[Parameter]:
-    """Every variable whose attribute takes numbers, in file order."""
+    """Return the variables whose attribute takes numbers, in file order."""
     interface = project.file.interface
     found: list[tuple[str, str, Variable, Attribute]] = []
     for window in interface.windows if interface else []:
@@ -39,8 +39,8 @@ def parameters(project: Project) -> list[Parameter]:
 
 
 def parse(project: Project, name: str, text: str) -> tuple[Parameter, list[float]]:
-    """The parameter that is meant, and its numbers. Raises
-    :class:`~nau_py.ProjectError`."""
+    """Return the parameter called ``name``, and the numbers in ``text``. Raises
+    :class:`~nau_py.ProjectError` for an unknown name and for illegal numbers."""
     known = parameters(project)
     where = project.file.location
     chosen = next((p for p in known if p.name == name), None)

@@ -1,4 +1,4 @@
-"""Which pipeline to run."""
+"""Choice of the pipeline to run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from nau_py.model.pipeline import Pipeline
 
 
 def choose_pipeline(project: Project, name: str | None) -> Pipeline:
-    """The pipeline called ``name``, or the default. Raises :class:`ProjectError`."""
+    """Return the pipeline called ``name``, or the default. Raises :class:`ProjectError`."""
     found = project.pipeline(name) if name is not None else project.default_pipeline
     if found is None:
         known = [p.name or "" for p in project.pipelines]

@@ -13,7 +13,8 @@ from pathlib import Path
 
 from nau_py.diagnostics.errors import NauError
 from nau_py.model.linked import Project
-from nau_py.run.renderer import Frame, Renderer
+from nau_py.run.frame import Frame
+from nau_py.run.renderer import Renderer
 from nau_py.run.used_files import PROGRAM, SHADER, used_files
 
 Stamp = tuple[int, int, int] | None

@@ -1,4 +1,4 @@
-"""What a run reports: data with a published schema (docs/report.md)."""
+"""The report of a run: data with a published schema (docs/report.md)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SCHEMA = "https://nau-py.invalid/schema/report-1.json"
 
 
 def _processor() -> str:
-    """The processor's name, where the system tells it."""
+    """Return the name of the processor, where the system has it."""
     try:
         text = Path("/proc/cpuinfo").read_text()
     except OSError:
@@ -30,7 +30,7 @@ def _processor() -> str:
 
 
 def machine_facts(session: Session) -> dict[str, Any]:
-    """What timings depend on."""
+    """Return the versions and devices that timings depend on."""
     device = session.resources.device
     return {
         "gl_renderer": device.renderer,
@@ -47,17 +47,17 @@ def machine_facts(session: Session) -> dict[str, Any]:
 
 
 def halving_ms(record: PassRecord) -> float:
-    """Projected time of the pass with half its estimated error.
+    """Project the time of the pass with half its estimated error, milliseconds.
 
-    The standard error falls with the square root of the number of samples, so four times as many
-    are traced and shaded; what else the pass does stays. Low-discrepancy points do better.
+    The standard error falls with the square root of the number of samples, so tracing and shading
+    take four times as long; other stages stay the same. Low-discrepancy points do better.
     """
     sampling = sum(record.report.stages.get(name, 0.0) for name in ("trace", "shade"))
     return record.ms + 3 * sampling
 
 
 def pass_data(record: PassRecord) -> dict[str, Any]:
-    """One pass of one frame."""
+    """Return the report of one pass in one frame."""
     data: dict[str, Any] = {
         "name": record.name,
         "class": record.pass_class,
@@ -90,7 +90,7 @@ def make_report(
     frames: list[tuple[int, float, list[PassRecord]]],
     setup_ms: float,
 ) -> dict[str, Any]:
-    """The report of ``frames``: (index, milliseconds, records)."""
+    """Return the report of ``frames``: (index, milliseconds, records)."""
     done = [record.report for _, _, records in frames for record in records]
     rays: dict[str, int] = {}
     for report in done:
@@ -124,7 +124,7 @@ def make_report(
 
 
 def joined(reports: list[dict[str, Any]]) -> dict[str, Any]:
-    """One report of several single-frame ones of the same run."""
+    """Return one report of several single-frame reports of the same run."""
     first = reports[0]
     ended = {k: v for k, v in reports[-1].items() if k == "ended"}
     rays: dict[str, int] = {}

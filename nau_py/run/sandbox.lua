@@ -1,7 +1,7 @@
--- What a project's scripts may use. Runs once in a new Lua state, before any script, with the limit
--- of instructions, a function that tells whether a call is under way, and one that takes what scripts
--- say.
-local limit, running, say = ...
+-- Removes from a new Lua state what scripts may not use, and limits the rest. Runs once, before any
+-- script. Arguments: the limit of instructions, a function that returns whether a call is running,
+-- and a function that takes lines of output.
+local limit, running, write = ...
 local sethook, errors = debug.sethook, error
 
 -- When a call has used up its instructions, every further one is an error, so that pcall cannot go
@@ -52,14 +52,14 @@ print = function(...)
     for index = 1, select("#", ...) do
         words[index] = tostring((select(index, ...)))
     end
-    say(table.concat(words, "\t"))
+    write(table.concat(words, "\t"))
 end
 
 -- Files to be written take what they are given and leave nothing on the disk; none can be read.
 local sink = {
     write = function(self, ...)
         for index = 1, select("#", ...) do
-            say(tostring((select(index, ...))))
+            write(tostring((select(index, ...))))
         end
         return self
     end,

@@ -1,4 +1,4 @@
-"""Lua in a cage: no files, no sockets, no Python, limits on instructions and memory."""
+"""Lua without files, sockets or Python, with limits on instructions and memory."""
 
 from __future__ import annotations
 
@@ -8,19 +8,19 @@ from pathlib import Path
 from typing import Any
 
 INSTRUCTIONS = 20_000_000
-"""Of one call, and of loading a file."""
+"""Instructions that one call, or loading a file, may take."""
 MEMORY = 64 * 1024 * 1024
-"""Bytes of a Lua state."""
-MAX_SAID = 1000
-"""Lines that are kept of what scripts print and write."""
+"""Bytes that a Lua state may take."""
+MAX_OUTPUT = 1000
+"""Lines of printed and written text that are kept."""
 
 
 class LuaError(Exception):
-    """A script failed; the message is Lua's, with its line."""
+    """Failure of a script; the message is Lua's, with its line."""
 
 
 def available() -> bool:
-    """Whether Lua is here: the extra ``lua``."""
+    """Return True if Lua is installed (the extra ``lua``)."""
     try:
         import_module("lupa")
     except ImportError:
@@ -47,26 +47,26 @@ def _runtime(memory: int) -> Any:
 
 
 class Sandbox:
-    """One Lua state. ``said`` holds what scripts print, and write to files."""
+    """A Lua state. ``output`` holds the lines that scripts print and write to files."""
 
     def __init__(self, instructions: int = INSTRUCTIONS, memory: int = MEMORY) -> None:
-        self.said: list[str] = []
+        self.output: list[str] = []
         self._memory = memory
         self._lua = _runtime(memory)
         code = (Path(__file__).parent / "sandbox.lua").read_text()
         self._running = False
-        parts = self._lua.execute(code, instructions, lambda: self._running, self._say)
+        parts = self._lua.execute(code, instructions, lambda: self._running, self._write)
         self._begin, self._finish = parts
 
-    def _say(self, text: str) -> None:
-        if len(self.said) < MAX_SAID:
-            self.said.append(text)
+    def _write(self, text: str) -> None:
+        if len(self.output) < MAX_OUTPUT:
+            self.output.append(text)
 
-    def _words(self, problem: Exception) -> str:
+    def _message(self, problem: Exception) -> str:
         lines = str(problem).strip().splitlines()
         return lines[0] if lines else f"it needs more than {self._memory >> 20} MiB of memory"
 
-    def offer(self, name: str, function: Callable[..., Any]) -> None:
+    def define(self, name: str, function: Callable[..., Any]) -> None:
         """Make ``function`` a global of the scripts."""
         self._lua.globals()[name] = function
 
@@ -76,7 +76,7 @@ class Sandbox:
         try:
             return work()
         except Exception as problem:
-            raise LuaError(self._words(problem)) from None
+            raise LuaError(self._message(problem)) from None
         finally:
             self._running = False
             self._finish()
@@ -86,7 +86,7 @@ class Sandbox:
         try:
             chunk = self._lua.compile(text, name=f"@{name}".encode())
         except Exception as problem:
-            raise LuaError(self._words(problem)) from None
+            raise LuaError(self._message(problem)) from None
         self._limited(chunk)
 
     def call(self, name: str) -> Any:

@@ -14,11 +14,11 @@ from nau_py.run.attributes import Attributes, get_buffer, set_buffer
 from nau_py.run.sandbox import LuaError, Sandbox, available
 
 MAX_REPEATS = 10_000
-"""Times that a pass runs in one frame while its test says so."""
+"""Largest number of runs of a pass in one frame, under a test in mode RUN_WHILE."""
 
 
 def hooks(project: Project) -> list[Script]:
-    """Every script of a project, in file order."""
+    """Return the scripts of a project, in file order."""
     found: list[Script | None] = []
     for pipeline in project.pipelines:
         found += [pipeline.preScript, pipeline.testScript, pipeline.postScript]
@@ -30,8 +30,8 @@ def hooks(project: Project) -> list[Script]:
 class Scripts:
     """The scripts of a running project, in one Lua state.
 
-    A file that fails is not called again, and its tests say no, as in Nau; ``diagnostics`` says
-    why.
+    After a failure the functions of a file are not called again, and its tests fail, as in Nau;
+    ``diagnostics`` has the reason.
     """
 
     def __init__(self, project: Project) -> None:
@@ -56,9 +56,9 @@ class Scripts:
             ("getBuffer", self._get_buffer),
             ("setBuffer", self._set_buffer),
         ):
-            self._lua.offer(name, function)
+            self._lua.define(name, function)
         for name in ("saveTexture", "saveBuffer", "saveProfiler", "screenshot"):
-            self._lua.offer(name, self._saver(name, found[0]))
+            self._lua.define(name, self._saver(name, found[0]))
         loaded: set[Path] = set()
         for script in found:
             path = self._path(script)
@@ -68,13 +68,13 @@ class Scripts:
 
     @property
     def running(self) -> bool:
-        """Whether there is a Lua state: without one, tests say yes for ever."""
+        """True with a Lua state; without one, tests always pass."""
         return self._lua is not None
 
     @property
-    def said(self) -> list[str]:
-        """What scripts printed or wrote."""
-        return self._lua.said if self._lua else []
+    def output(self) -> list[str]:
+        """Lines that scripts have printed or written."""
+        return self._lua.output if self._lua else []
 
     def _path(self, script: Script) -> Path:
         return resolve(Path(script.location.file).parent, script.file or "").best
@@ -92,7 +92,7 @@ class Scripts:
         self.diagnostics.append(warning("L008", script.location, message))
 
     def call(self, script: Script | None, frame: FrameContext, pass_: Pass) -> Any:
-        """What a hook returns; None where there is none, or its file is faulty."""
+        """Call a hook and return its value; None where there is no hook, or its file has failed."""
         if script is None or self._lua is None or self._path(script) in self._faulty:
             return None
         self._frame, self._pass = frame, pass_
@@ -104,34 +104,34 @@ class Scripts:
             return None
 
     def test(self, script: Script | None, frame: FrameContext, pass_: Pass) -> bool:
-        """Whether a test says yes; without one, or without Lua, yes."""
+        """Return True if a test passes; without a test, or without Lua, it does."""
         if script is None or self._lua is None:
             return True
         found = self.call(script, frame, pass_)
         return found is not None and found is not False
 
-    def _now(self) -> tuple[FrameContext, Pass]:
+    def _current(self) -> tuple[FrameContext, Pass]:
         if self._frame is None or self._pass is None:
             raise ValueError("no frame is being drawn yet")
         return self._frame, self._pass
 
     def _get(self, type_: str, name: str, component: str, index: int, table: Any) -> None:
-        frame, pass_ = self._now()
+        frame, pass_ = self._current()
         found = self.attributes.get(frame, pass_, type_, name, component, int(index))
         for k, value in enumerate(found, 1):
             table[k] = int(value) if value == int(value) else value
 
     def _set(self, type_: str, name: str, component: str, index: int, table: Any) -> None:
-        frame, pass_ = self._now()
+        frame, pass_ = self._current()
         values = _numbers(table)
         self.attributes.set(frame, pass_, type_, name, component, int(index), values)
 
     def _get_buffer(self, name: str, offset: int, type_: str, table: Any) -> None:
-        for k, value in enumerate(get_buffer(self._now()[0], name, int(offset), type_), 1):
+        for k, value in enumerate(get_buffer(self._current()[0], name, int(offset), type_), 1):
             table[k] = int(value) if value == int(value) else value
 
     def _set_buffer(self, name: str, offset: int, type_: str, table: Any) -> None:
-        set_buffer(self._now()[0], name, int(offset), type_, _numbers(table))
+        set_buffer(self._current()[0], name, int(offset), type_, _numbers(table))
 
     def _saver(self, name: str, script: Script) -> Any:
         def save(*arguments: Any) -> None:
@@ -144,7 +144,7 @@ class Scripts:
 
 
 def _numbers(table: Any) -> list[float]:
-    """The numbers of a Lua table, in the order of its keys 1, 2, …"""
+    """Return the numbers of a Lua table, in the order of its keys 1, 2, …"""
     values: list[float] = []
     while (value := table[len(values) + 1]) is not None:
         values.append(float(value))

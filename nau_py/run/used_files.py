@@ -14,31 +14,33 @@ from nau_py.raytrace.programs.source import stand_in
 
 SHADER, PROGRAM, PROJECT, MODEL = "shader", "program", "project", "model"
 _SIBLINGS = {"script": (".lua",), PROGRAM: (".py",)}
-"""Kinds of files that can bring others of their folder, of these endings."""
+"""Kinds of files that may read others of their folder, with these endings."""
 _BESIDE_MODELS = (
     ".mtl", ".material", ".bin", ".skeleton", ".png", ".jpg", ".jpeg", ".tga", ".tif", ".tiff",
     ".bmp", ".gif", ".webp",
 )  # fmt: skip
-"""Endings of what models refer to, where it is not known which files those are."""
+"""Endings of files that models of unknown formats may refer to."""
 _WORD = re.compile(r"^\s*(?:mtllib|map_\w+|bump|disp|decal|refl|norm)\s+(.+?)\s*$", re.MULTILINE)
 
 
 def used_files(project: Project) -> dict[Path, str]:
-    """Path to kind (``project``: it and its libraries; else the kind of the attribute that names
-    it) of every file that a picture depends on, those that do not exist included: also the material
-    files and textures of models."""
+    """Return path to kind of every file that a picture depends on, existing or not.
+
+    ``project``: the project and its libraries; else the kind of the attribute that names the file.
+    The material files and textures of models are included.
+    """
     found = {Path(p).resolve(): PROJECT for p in project.sources}
     found[project.path.resolve()] = PROJECT
     for node in nodes(project):
         for kind, path in _named(project, node):
             found.setdefault(path.resolve(), kind)
-            for other in _brought(path.resolve(), kind):
+            for other in _related(path.resolve(), kind):
                 found.setdefault(other, kind)
     return found
 
 
 def _named(project: Project, node: Node) -> Iterator[tuple[str, Path]]:
-    """(kind, path) of the files that a node names."""
+    """Yield (kind, path) of the files that a node names."""
     for name, marker in node.markers().items():
         value = getattr(node, name)
         if not isinstance(marker, Attr) or not marker.file or not isinstance(value, str):
@@ -52,28 +54,28 @@ def _named(project: Project, node: Node) -> Iterator[tuple[str, Path]]:
         yield marker.file, resolve(folder, value).best
 
 
-def _brought(path: Path, kind: str) -> Iterator[Path]:
-    """The files that a file brings with it."""
+def _related(path: Path, kind: str) -> Iterator[Path]:
+    """Yield the files that a file refers to."""
     if kind == "folder":
         yield from (p for p in path.rglob("*") if p.is_file())
     elif kind == MODEL and path.suffix.lower() == ".obj":
-        for material in _referred(path):
+        for material in _referenced(path):
             yield material
-            yield from _referred(material)
+            yield from _referenced(material)
     elif kind == MODEL:
         yield from _of_endings(path.parent, _BESIDE_MODELS)
     elif kind in _SIBLINGS:
         yield from _of_endings(path.parent, _SIBLINGS[kind])
 
 
-def _referred(path: Path) -> Iterator[Path]:
-    """The material files of an OBJ file, the images of an MTL file."""
+def _referenced(path: Path) -> Iterator[Path]:
+    """Yield the material files of an OBJ file, or the images of an MTL file."""
     try:
         text = path.read_text("utf-8", "replace")
     except OSError:
         return
     for words in _WORD.findall(text):
-        for name in (words, words.split()[-1]):  # options may stand before it
+        for name in (words, words.split()[-1]):  # options may precede it
             yield resolve(path.parent, name).best.resolve()
 
 

@@ -30,7 +30,8 @@ from nau_py.passes.frame import Progress, RunOptions
 from nau_py.passes.ray_query import RayQueryPass
 from nau_py.reporting.output import exr, png
 from nau_py.reporting.target_picture import difference, encoded, shown, thumbnail, tinted
-from nau_py.run.renderer import Frame, Renderer
+from nau_py.run.frame import Frame
+from nau_py.run.renderer import Renderer
 from nau_py.run.used_files import PROGRAM, SHADER
 from nau_py.scene.mesh import bounding_box
 from nau_py.viewer.camera import camera_with

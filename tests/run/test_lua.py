@@ -181,7 +181,7 @@ def test_scripts_reach_nothing_outside(name: str, tmp_path: Path) -> None:
     secret, new = tmp_path / "secret", tmp_path / "new"
     secret.write_text("treasure")
     sandbox = Sandbox(instructions=1_000_000)
-    sandbox.offer("getAttr", lambda *a: None)
+    sandbox.define("getAttr", lambda *a: None)
     body = ATTACKS[name].format(file=secret, new=new)
     sandbox.load(f"function f() {body} end", "a.lua")
     start = time.perf_counter()
@@ -212,4 +212,4 @@ def test_after_a_limit_the_next_call_has_its_own() -> None:
 def test_what_scripts_print_is_kept(folder: Folder) -> None:
     sandbox = Sandbox()
     sandbox.load("print('a', 1) io.open('log', 'a'):write('b')", "a.lua")
-    assert sandbox.said == ["a\t1", "b"]
+    assert sandbox.output == ["a\t1", "b"]

@@ -1,4 +1,4 @@
-"""Pipelines in turn: docs/format.md, 11.2."""
+"""Pipelines one after another: docs/format.md, 11.2 (nau_py.run.active_pipeline)."""
 
 from __future__ import annotations
 
