@@ -179,7 +179,7 @@ def test_lint_and_plan_need_no_gl_and_no_embree() -> None:
         "p = nau_py.load('projects/selective/project.xml')\n"
         "assert not [d for d in nau_py.lint(p) if d.severity == 'error']\n"
         "assert len(nau_py.plan(p).running) == 4\n"
-        "bad = {'moderngl', 'OpenGL', 'embreex'} & set(sys.modules)\n"
+        "bad = {'moderngl', 'OpenGL', 'embreex', 'networkx'} & set(sys.modules)\n"
         "assert not bad, bad\n"
     )
     root = PACKAGE.parent

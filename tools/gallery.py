@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from nau_py.api import load, plan
-from nau_py.graph.export import to_svg
+from nau_py.graph.picture import draw_svg
 from nau_py.model.linked import Project
 from nau_py.process.files import write_bytes, write_text
 from nau_py.reporting.output import png
@@ -42,7 +42,7 @@ def build_gallery(root: Path, out: Path) -> Iterator[str]:
             renderer.close()
         name = "_".join(file.parent.relative_to(root / "projects").parts)
         write_bytes(out / f"{name}.png", png(frame.image))
-        write_text(out / f"{name}.svg", to_svg(plan(project)))
+        write_text(out / f"{name}.svg", draw_svg(plan(project).graph))
         lines += _entry(root, file, project, frame, name)
         yield f"{name}: {frame.report['frames'][-1]['ms']:.0f} ms"
     write_text(out / "index.md", "\n".join(lines))

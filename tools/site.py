@@ -22,6 +22,7 @@ NAV: list[dict[str, Any]] = [
             {"Ray programs": "docs/programs.md"},
             {"Effects on demand": "docs/effects-on-demand.md"},
             {"Accuracy against time": "docs/cost.md"},
+            {"The graph of a pipeline": "docs/graph.md"},
             {"The viewer": "docs/viewer.md"},
             {"Help in the editor": "docs/editors.md"},
             {"Grading a class": "docs/grading.md"},

@@ -1,4 +1,4 @@
-"""What the graph must know of a pass class; :mod:`nau_py.passes` provides it."""
+"""The interface between the graph and the pass classes, which :mod:`nau_py.passes` provides."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from nau_py.model.passes import Pass
 
 @dataclass(slots=True)
 class Access:
-    """What one pass reads and writes, in a stable order.
+    """Resources that one pass reads and writes, in a stable order.
 
-    ``replaces`` holds the written resources of which nothing earlier remains; ``keeps`` those read
-    ones that are drawn over without being cleared, rather than sampled.
+    ``replaces`` holds the written resources whose earlier content is lost. ``keeps`` holds the
+    read resources that the pass draws over without clearing them, and does not sample.
     """
 
     reads: list[Resource] = field(default_factory=list)
@@ -26,21 +26,25 @@ class Access:
     keeps: list[Resource] = field(default_factory=list)
 
     def add_read(self, resource: Resource) -> None:
+        """Append ``resource`` to ``reads``, once."""
         if resource not in self.reads:
             self.reads.append(resource)
 
     def add_write(self, resource: Resource) -> None:
+        """Append ``resource`` to ``writes``, once."""
         if resource not in self.writes:
             self.writes.append(resource)
 
 
 class Contract(Protocol):
-    """The pure half of a pass class: no context, no execution."""
+    """The part of a pass class that the graph uses. It needs no context and executes nothing."""
 
-    def access(self, project: Project, pass_: Pass) -> Access: ...
+    def access(self, project: Project, pass_: Pass) -> Access:
+        """List the resources that ``pass_`` reads and writes."""
+        ...
 
     def faults(self, project: Project, pass_: Pass) -> Iterable[Diagnostic]: ...
 
 
 Contracts = Mapping[str, Contract]
-"""Contracts by pass class."""
+"""Contracts by the name of the pass class."""

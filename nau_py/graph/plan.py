@@ -1,58 +1,61 @@
-"""The plan of a pipeline: which passes run, in which order, and why the others do not."""
+"""The plan of a pipeline: the passes that run, in order, and why the others do not."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
-from nau_py.graph.contract import Access, Contracts
-from nau_py.graph.dependencies import PassGraph, build
+from nau_py.graph.contract import Contracts
+from nau_py.graph.dependencies import Dependencies, find_dependencies
 from nau_py.graph.resource import WINDOW, Resource
+from nau_py.graph.step import Step
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.model.pipeline import Pipeline
 
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One pass of the plan. ``reason`` says why it is left out, and is empty where it runs."""
-
-    pass_: Pass
-    access: Access
-    run: bool
-    reason: str = ""
-
-    @property
-    def name(self) -> str:
-        return self.pass_.name or ""
+if TYPE_CHECKING:
+    from nau_py.graph.network import Network
 
 
 @dataclass(slots=True)
 class Plan:
-    """What running a pipeline means. A pure value: making it needs no GL context."""
+    """A pipeline's passes in the order of their run. A pure value: it needs no GL context."""
 
     project: str
     pipeline: str
     steps: list[Step]
-    graph: PassGraph = field(repr=False)
+    dependencies: Dependencies = field(repr=False)
     output: Resource = WINDOW
-    """What the picture is read from."""
-
-    def _repr_html_(self) -> str:
-        """The graph of passes and targets, for notebooks."""
-        from nau_py.graph.export import to_svg
-
-        return to_svg(self)
+    """The resource that the picture is read from."""
 
     @property
     def running(self) -> list[Step]:
+        """The steps that run."""
         return [step for step in self.steps if step.run]
 
+    @property
+    def graph(self) -> Network:
+        """The passes and resources as a new ``networkx.DiGraph``, which the caller may change.
 
-def _outputs(graph: PassGraph) -> list[Resource]:
-    """What the user sees: the window, or what the last writing pass writes."""
-    if any(WINDOW in access.writes for access in graph.accesses):
+        :mod:`nau_py.graph.network` documents its nodes, edges and attributes. The first call
+        imports networkx, which takes a quarter of a second; making a plan does not.
+        """
+        from nau_py.graph.network import build_graph
+
+        return build_graph(self.project, self.pipeline, self.steps, self.dependencies, self.output)
+
+    def _repr_html_(self) -> str:
+        """Draw the graph of passes and resources, for notebooks."""
+        from nau_py.graph.picture import draw_svg
+
+        return draw_svg(self.graph)
+
+
+def _find_outputs(dependencies: Dependencies) -> list[Resource]:
+    """List what the user sees: the window, or the resources of the last pass that writes."""
+    if any(WINDOW in access.writes for access in dependencies.accesses):
         return [WINDOW]
-    for pass_, access in zip(reversed(graph.passes), reversed(graph.accesses)):
+    for pass_, access in zip(reversed(dependencies.passes), reversed(dependencies.accesses)):
         if access.writes and pass_.run_mode != "DONT_RUN":
             return list(access.writes)
     return []
@@ -62,15 +65,15 @@ def _has_side_effects(pass_: Pass) -> bool:
     return any((pass_.testScript, pass_.preScript, pass_.postScript))
 
 
-def _keep(graph: PassGraph, wanted: set[Resource]) -> set[int]:
-    """Indices of the passes that ``wanted`` needs, this frame's and the next one's."""
+def _find_needed(dependencies: Dependencies, wanted: set[Resource]) -> set[int]:
+    """Find the indices of the passes that ``wanted`` needs, in this frame and the next one."""
     kept: set[int] = set()
     across_frames: set[Resource] = set()
     while True:
         live = wanted | across_frames
         found: set[int] = set()
-        for index in range(len(graph.passes) - 1, -1, -1):
-            pass_, access = graph.passes[index], graph.accesses[index]
+        for index in range(len(dependencies.passes) - 1, -1, -1):
+            pass_, access = dependencies.passes[index], dependencies.accesses[index]
             if pass_.run_mode == "DONT_RUN":
                 continue
             if _has_side_effects(pass_) or live.intersection(access.writes):
@@ -78,14 +81,14 @@ def _keep(graph: PassGraph, wanted: set[Resource]) -> set[int]:
                 if pass_.run_mode == "RUN_ALWAYS":
                     live -= set(access.replaces)
                 live |= set(access.reads)
-        history = {resource for index, resource in graph.history if index in found}
+        history = {resource for index, resource in dependencies.history if index in found}
         if found == kept and history <= across_frames:
             return found
         kept, across_frames = found, across_frames | history
 
 
-def _reason(graph: PassGraph, index: int, contracts: Contracts) -> str:
-    pass_, access = graph.passes[index], graph.accesses[index]
+def _explain_omission(dependencies: Dependencies, index: int, contracts: Contracts) -> str:
+    pass_, access = dependencies.passes[index], dependencies.accesses[index]
     if pass_.pass_class not in contracts:
         return f"its class '{pass_.pass_class}' is not supported"
     if pass_.run_mode == "DONT_RUN":
@@ -103,25 +106,25 @@ def make_plan(
     wanted: frozenset[Resource] = frozenset(),
     everything: bool = False,
 ) -> Plan:
-    """Plan ``pipeline``.
+    """Plan ``pipeline``: decide which passes run.
 
     ``wanted`` names resources to keep beside the picture; ``everything`` keeps all that is
     written (for ``--targets``).
     """
-    graph = build(project, pipeline, contracts)
-    outputs = _outputs(graph)
+    dependencies = find_dependencies(project, pipeline, contracts)
+    outputs = _find_outputs(dependencies)
     live = set(outputs) | wanted
     if everything:
-        live |= {resource for access in graph.accesses for resource in access.writes}
-    kept = _keep(graph, live)
+        live |= {resource for access in dependencies.accesses for resource in access.writes}
+    kept = _find_needed(dependencies, live)
     steps = [
         Step(
-            graph.passes[index],
-            graph.accesses[index],
+            dependencies.passes[index],
+            dependencies.accesses[index],
             index in kept,
-            "" if index in kept else _reason(graph, index, contracts),
+            "" if index in kept else _explain_omission(dependencies, index, contracts),
         )
-        for index in range(len(graph.passes))
+        for index in range(len(dependencies.passes))
     ]
     output = outputs[0] if outputs else WINDOW
-    return Plan(project.name, pipeline.name or "", steps, graph, output)
+    return Plan(project.name, pipeline.name or "", steps, dependencies, output)

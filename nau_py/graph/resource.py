@@ -1,4 +1,4 @@
-"""What passes hand to each other."""
+"""Resources that passes exchange."""
 
 from __future__ import annotations
 

@@ -1,11 +1,15 @@
-"""D: what passes hand to each other."""
+"""Rules D: resources that passes exchange."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 
 from nau_py.diagnostics.catalogue import ERROR, NOTE, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic
+from nau_py.diagnostics.location import Location
+from nau_py.graph.contract import Access
 from nau_py.graph.plan import Plan, make_plan
 from nau_py.graph.resource import Resource
 from nau_py.model.attributes.texture import channels
@@ -63,10 +67,18 @@ D006 = rule(
     "<buffer var='mask' texture='L::r8' mask='w'/>",
     "use an RGBA32F texture, or mask='x'",
 )
+D007 = rule(
+    "D007",
+    NOTE,
+    "Cycle over frames",
+    "Passes feed each other, and the cycle is closed by what the previous frame left in a target.",
+    "a pass reads 'L::history' and a later one writes it from what the first one drew",
+    "wanted for accumulation; else let the writing pass come first",
+)
 
 
 def target_textures(project: Project, pass_: Pass) -> list[str]:
-    """Qualified names of the textures of a pass's render target; none for the window."""
+    """List the qualified names of the textures of a pass's render target: none for the window."""
     owner = project.target_of(pass_)
     return [f"{owner[0]}::{name}" for name in owner[1].texture_names] if owner else []
 
@@ -78,37 +90,12 @@ def _plans(context: LintContext) -> Iterator[Plan]:
 
 @check
 def flow(context: LintContext) -> Iterator[Diagnostic]:
-    """Reads before writes, reads without writes, passes without effect, feedback."""
-    project = context.project
+    """Report reads before writes, reads without writes, passes without effect, and cycles."""
     for plan in _plans(context):
-        graph = plan.graph
-        for index, resource in graph.history:
-            if resource in graph.accesses[index].writes:
-                continue  # it may well write before it reads
-            writer = graph.passes[graph.writers(resource)[0]]
-            pass_ = graph.passes[index]
-            yield D001.at(
-                pass_.location,
-                f"pass '{pass_.name}' reads {resource}, which only the later pass "
-                f"'{writer.name}' writes: it sees the previous frame",
-                ((writer.location, f"written by '{writer.name}'"),),
-            )
-        for pass_, access in zip(graph.passes, graph.accesses):
-            for resource in access.reads:
-                if _is_target(project, resource) and not graph.writers(resource):
-                    yield D002.at(
-                        pass_.location,
-                        f"pass '{pass_.name}' reads {resource}, a target that no pass of pipeline "
-                        f"'{plan.pipeline}' writes",
-                    )
-            feedback = [r for r in access.reads if r in access.writes and r not in access.keeps]
-            own = target_textures(project, pass_)
-            for resource in feedback:
-                if resource.name in own:
-                    yield D004.at(
-                        pass_.location,
-                        f"cycle: pass '{pass_.name}' samples {resource} while drawing into it",
-                    )
+        yield from _early_reads(plan)
+        for pass_, access in zip(plan.dependencies.passes, plan.dependencies.accesses):
+            yield from _unwritten_reads(context.project, plan, pass_, access)
+            yield from _feedback(context.project, pass_, access)
         for step in plan.steps:
             if not step.run and step.pass_.pass_class in context.contracts:
                 yield D003.at(
@@ -117,13 +104,81 @@ def flow(context: LintContext) -> Iterator[Diagnostic]:
                 )
 
 
+def _early_reads(plan: Plan) -> Iterator[Diagnostic]:
+    """Report reads of the previous frame's content, and the cycles that they close."""
+    dependencies = plan.dependencies
+    for index, resource in dependencies.previous_frame_reads():
+        writer = dependencies.passes[dependencies.writers(resource)[0]]
+        pass_ = dependencies.passes[index]
+        yield D001.at(
+            pass_.location,
+            f"pass '{pass_.name}' reads {resource}, which only the later pass "
+            f"'{writer.name}' writes: it sees the previous frame",
+            ((writer.location, f"written by '{writer.name}'"),),
+        )
+    if dependencies.has_frame_cycle():
+        yield from _cycles_over_frames(plan)
+
+
+def _cycles_over_frames(plan: Plan) -> Iterator[Diagnostic]:
+    # Only here does lint need networkx, whose import takes a quarter of a second.
+    from nau_py.graph.network import find_frame_cycles
+
+    graph = plan.graph
+    for cycle in find_frame_cycles(graph):
+        steps = [plan.steps[graph.nodes[node]["index"]] for node in cycle[::2]]
+        resources = cycle[1::2]
+        chain = " → ".join(
+            f"'{step.name}' ({_short(step.pass_.location)}) → {resource}"
+            for step, resource in zip(steps, resources)
+        )
+        first = steps[0].pass_.location
+        yield D007.at(
+            first,
+            f"cycle over frames: {chain} → '{steps[0].name}'; it is closed by {resources[-1]} of "
+            "the previous frame",
+            tuple(
+                (step.pass_.location, f"'{step.name}' reads {before} and writes {after}")
+                for step, before, after in zip(steps, [resources[-1], *resources], resources)
+            ),
+        )
+
+
+def _short(location: Location) -> str:
+    """Format a location with the bare file name; the diagnostic's places have the folders."""
+    return str(replace(location, file=Path(location.file).name))
+
+
+def _unwritten_reads(
+    project: Project, plan: Plan, pass_: Pass, access: Access
+) -> Iterator[Diagnostic]:
+    for resource in access.reads:
+        if _is_target(project, resource) and not plan.dependencies.writers(resource):
+            yield D002.at(
+                pass_.location,
+                f"pass '{pass_.name}' reads {resource}, a target that no pass of pipeline "
+                f"'{plan.pipeline}' writes",
+            )
+
+
+def _feedback(project: Project, pass_: Pass, access: Access) -> Iterator[Diagnostic]:
+    own = target_textures(project, pass_)
+    for resource in access.reads:
+        sampled = resource in access.writes and resource not in access.keeps
+        if sampled and resource.name in own:
+            yield D004.at(
+                pass_.location,
+                f"cycle: pass '{pass_.name}' samples {resource} while drawing into it",
+            )
+
+
 def _is_target(project: Project, resource: Resource) -> bool:
     return resource.kind == "texture" and project.target_of_texture(resource.name) is not None
 
 
 @check
 def raytrace_inputs(context: LintContext) -> Iterator[Diagnostic]:
-    """Sizes and formats of what raytrace passes read and write."""
+    """Report sizes and formats that do not match in what raytrace passes read and write."""
     project = context.project
     for pipeline in project.pipelines:
         sized = {

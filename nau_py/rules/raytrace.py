@@ -8,7 +8,7 @@ from pathlib import Path
 
 from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
-from nau_py.graph.dependencies import build
+from nau_py.graph.dependencies import find_dependencies
 from nau_py.graph.resource import Resource
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import BUILTIN, Program, RaytracePass
@@ -227,7 +227,7 @@ def masks(context: LintContext) -> Iterator[Diagnostic]:
     """The mask must be written by an earlier pass."""
     project = context.project
     for pipeline in project.pipelines:
-        graph = build(project, pipeline, context.contracts)
+        graph = find_dependencies(project, pipeline, context.contracts)
         for index, pass_ in enumerate(graph.passes):
             if not isinstance(pass_, RaytracePass) or pass_.mask is None:
                 continue

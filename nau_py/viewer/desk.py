@@ -27,7 +27,7 @@ from nau_py.run.used_files import used_files
 from nau_py.viewer import orbit
 from nau_py.viewer.camera import aims_from_position, camera_node, camera_with
 from nau_py.viewer.controls import Control, Values, controls, key_of, model_material
-from nau_py.viewer.graph import graph_data
+from nau_py.viewer.graph import EMPTY_GRAPH, graph_data
 from nau_py.viewer.save import save_edits
 from nau_py.viewer.studio import Facts, Shown, Wanted
 
@@ -351,7 +351,7 @@ class Desk:
         try:
             return graph_data(plan(self.project, self.pipeline), report)
         except NauError:
-            return {"passes": [], "targets": []}
+            return EMPTY_GRAPH
 
 
 def _rounded(vector: orbit.F64) -> tuple[float, ...]:

@@ -54,7 +54,7 @@ def test_programs_of_a_raytrace_pass_are_told() -> None:
 def test_svg_is_well_formed_and_shows_every_pass() -> None:
     root = etree.fromstring(export(make(), "svg").encode())
     texts = [t.text for t in root.iter("{*}text")]
-    for name in ("raster", "trace", "combine", "Hybrid::position", "window"):
+    for name in ("2  raster", "3  trace", "4  combine", "Hybrid::position", "window"):
         assert name in texts
 
 

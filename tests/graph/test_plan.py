@@ -54,7 +54,7 @@ def running(made: Plan) -> str:
 
 def test_hazards() -> None:
     made = plan(a=">t", b="t>u", c="u>t", d="t>W")
-    edges = {(e.earlier, e.later, e.resource.name, e.hazard) for e in made.graph.edges}
+    edges = {(e.earlier, e.later, e.resource.name, e.hazard) for e in made.dependencies.edges}
     assert edges == {
         (0, 1, "t", "read after write"),
         (1, 2, "u", "read after write"),
@@ -62,7 +62,7 @@ def test_hazards() -> None:
         (0, 2, "t", "write after write"),
         (2, 3, "t", "read after write"),
     }
-    assert all(e.earlier < e.later for e in made.graph.edges)
+    assert all(e.earlier < e.later for e in made.dependencies.edges)
     assert [step.name for step in made.steps] == ["a", "b", "c", "d"]
 
 

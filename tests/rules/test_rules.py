@@ -224,6 +224,15 @@ def test_the_demos_have_no_finding() -> None:
             "it sees the previous frame",
         ),
         (
+            '<pass name="q" class="quad"><texture name="c" fromLibrary="L"/>'
+            '<renderTarget name="wide" fromLibrary="L"/></pass>'
+            '<pass name="r" class="quad"><texture name="w" fromLibrary="L"/>'
+            '<renderTarget name="rt" fromLibrary="L"/></pass>',
+            "D007 note `pass` cycle over frames: 'q' (project.xml:13:1) → texture L::w → 'r' "
+            "(project.xml:13:114) → texture L::c → 'q'; it is closed by texture L::c of the previous "
+            "frame",
+        ),
+        (
             '<pass name="q" class="quad"><texture name="w" fromLibrary="L"/></pass>'
             + DRAW.format(""),
             "D002 warning `pass` pass 'q' reads texture L::w, a target that no pass of pipeline 'P' "
