@@ -7,7 +7,8 @@ from time import perf_counter
 
 from nau_py.diagnostics.diagnostic import Diagnostic, error, warning
 from nau_py.diagnostics.errors import NauError
-from nau_py.graph.plan import Plan, Step
+from nau_py.graph.plan import Plan
+from nau_py.graph.step import Step
 from nau_py.model.pipeline import Pipeline
 from nau_py.passes import pass_classes
 from nau_py.passes.frame import FrameContext

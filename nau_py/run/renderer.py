@@ -16,7 +16,6 @@ from nau_py.diagnostics.diagnostic import Diagnostic, Severity, error, warning
 from nau_py.diagnostics.errors import ProjectError
 from nau_py.graph.plan import Plan, make_plan
 from nau_py.graph.resource import WINDOW
-from nau_py.graph.step import Step
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
 from nau_py.model.values import Scalar
