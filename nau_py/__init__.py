@@ -61,7 +61,7 @@ _LAZY = {
 
 
 def __getattr__(name: str) -> Any:
-    """Load what runs projects only when it is asked for, so that linting starts fast."""
+    """Import the modules that run projects at first use, so that linting starts fast."""
     if name in _LAZY:
         from importlib import import_module
 

@@ -1,7 +1,7 @@
-"""The pass class ``mask``: selects the pixels that a raytrace pass traces.
+"""The model of class ``mask``: selectors of the pixels that a raytrace pass traces.
 
 A selector gives every pixel a weight from 0 to 1; ``and`` is the least of its parts, ``or`` the
-greatest, ``not`` one less it.
+greatest, ``not`` 1 minus the greatest.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ FLOAT = DataType.FLOAT
 
 
 class MaterialSelector(Node):
-    """1 where what is seen has this material."""
+    """1 where the visible surface has this material."""
 
     name: Annotated[str | None, Attr(doc="Material, or prefix and a final `*`.", required=True)] = (
         None
@@ -26,7 +26,7 @@ class MaterialSelector(Node):
 
 
 class PropertySelector(Node):
-    """1 where a COLOR attribute of the visible material lies between bounds; of a colour, its
+    """1 where a COLOR attribute of the visible material is between two bounds; for a colour, its
     greatest component."""
 
     name: Annotated[str | None, Attr(doc="COLOR attribute.", required=True)] = None
@@ -57,7 +57,7 @@ class DistanceSelector(Node):
 
 
 class GazeSelector(Node):
-    """1 about the point that the eye looks at, then linear down to a constant floor."""
+    """1 around the point of gaze, then linear down to a constant floor."""
 
     x: Annotated[float | None, Attr(FLOAT, "Point, part of the width; default 0.5.")] = None
     y: Annotated[float | None, Attr(FLOAT, "Point, part of the height; default 0.5.")] = None
@@ -71,8 +71,8 @@ class GazeSelector(Node):
 
 
 class ShadowBorderSelector(Node):
-    """1 where a shadow map is undecided: of a point's texel and the eight about it, some are nearer
-    to the light than the surface and some are not."""
+    """1 at the border of a shadow: of the nine texels of the shadow map around a point, some are
+    nearer to the light than the surface and some are not."""
 
     texture: Annotated[
         str | None, Attr(doc="Depth texture, `lib::name`.", required=True, ref="texture")
@@ -87,8 +87,8 @@ class ShadowBorderSelector(Node):
         float | None,
         Attr(
             FLOAT,
-            "Tangent of the light's half angle: leaves out blockers too near for their penumbra "
-            "to reach so far; default 0, none.",
+            "Tangent of the light's half angle; leaves out blockers so near the surface that their "
+            "penumbra is narrower than `radius`; default 0: none.",
         ),
     ] = None
     bias: Annotated[float | None, Attr(FLOAT, "Depth bias, 0 to 1; default 0.002.")] = None
@@ -129,7 +129,7 @@ class OrSelector(Node):
 
 
 class NotSelector(Node):
-    """One less the greatest of its parts."""
+    """1 minus the greatest of its parts."""
 
     parts: Annotated[list[Any], Variants(SELECTORS)] = Field(default_factory=list)
 
@@ -138,7 +138,7 @@ SELECTORS |= {"and": AndSelector, "or": OrSelector, "not": NotSelector}
 
 
 class MaskPass(Pass):
-    """Writes weights: position in the first three components of its target, weight in the last.
-    Several selectors count as `or`; none selects everything."""
+    """Writes world position into the first three components of its target, weight into the last.
+    Several selectors are joined by `or`; without a selector every pixel is selected."""
 
     select: Annotated[list[Any], Variants(SELECTORS, "select")] = Field(default_factory=list)

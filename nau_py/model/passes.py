@@ -1,4 +1,4 @@
-"""What every pass class has in common (docs/format.md, 4.3 and 4.5)."""
+"""The model that all pass classes share (docs/format.md, 4.3 and 4.5)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Script(Node):
 
 
 class TestScript(Script):
-    """A Lua function that says whether the pass runs."""
+    """A Lua function that decides if the pass runs."""
 
     TEST_MODE: Annotated[
         str | None, Attr(doc="Once, or again while true.", values=("RUN_IF", "RUN_WHILE"))
@@ -29,7 +29,7 @@ class TestScript(Script):
 
 
 class Mode(Node):
-    """In which frames the pass runs."""
+    """The frames in which the pass runs."""
 
     value: Annotated[str | None, Attr(doc="Run mode.", required=True, values=RUN_MODES)] = None
 
@@ -95,7 +95,7 @@ class ViewportReference(Node):
 
 
 class TargetReference(Node):
-    """Where the pass draws: a render target, or that of an earlier pass."""
+    """The render target of the pass, or that of an earlier pass."""
 
     name: Annotated[
         str | None, Attr(doc="Render target.", ref="render target", library="fromLibrary")
@@ -138,6 +138,7 @@ class Pass(Configured):
 
     @property
     def pass_class(self) -> str:
+        """The value of ``class``, or ``default``."""
         return self.class_ or "default"
 
     @property
@@ -148,6 +149,7 @@ class Pass(Configured):
 
     @property
     def run_mode(self) -> str:
+        """The run mode, RUN_ALWAYS where the file gives none."""
         return (self.mode.value if self.mode else None) or "RUN_ALWAYS"
 
     @property

@@ -1,4 +1,4 @@
-"""What materials, targets and process items make a pass read and write."""
+"""Resources that materials, targets and process items make a pass read and write."""
 
 from __future__ import annotations
 
@@ -12,15 +12,17 @@ from nau_py.model.passes import Pass, ProcessBuffer, ProcessTexture
 
 
 def texture(name: str | None, library: str | None) -> Resource:
+    """Return the texture ``name`` of ``library``, of the default library where it is None."""
     return Resource("texture", qualified(name or "", library or DEFAULT_LIBRARY))
 
 
 def buffer(name: str | None, library: str | None) -> Resource:
+    """Return the buffer ``name`` of ``library``, of the default library where it is None."""
     return Resource("buffer", qualified(name or "", library or DEFAULT_LIBRARY))
 
 
 def buffer_of(project: Project, unit: BufferUnit, library: str) -> Resource:
-    """The buffer that a material binds: its own library's first, else ``fromLibrary``'s."""
+    """Return the buffer that a material binds: of its own library, else of ``fromLibrary``."""
     own = buffer(unit.name, library)
     if unit.fromLibrary and own.name not in project.names("buffer"):
         return buffer(unit.name, unit.fromLibrary)
@@ -28,7 +30,7 @@ def buffer_of(project: Project, unit: BufferUnit, library: str) -> Resource:
 
 
 def add_material(access: Access, project: Project, library: str, name: str) -> None:
-    """What drawing with a material reads and writes beside the target."""
+    """Add what drawing with a material reads and writes beside the target."""
     found = project.material(library, name)
     if found is None:
         return
@@ -63,7 +65,7 @@ def _add_injection(access: Access, map_: InjectionMap) -> None:
 
 
 def add_maps(access: Access, project: Project, pass_: Pass) -> None:
-    """What the material and injection maps of a pass make it read and write."""
+    """Add what the material and injection maps of a pass read and write."""
     for injection in pass_.injectionMaps:
         _add_injection(access, injection)
     for map_ in pass_.materialMaps:
@@ -71,7 +73,7 @@ def add_maps(access: Access, project: Project, pass_: Pass) -> None:
 
 
 def add_commands(access: Access, pass_: Pass) -> None:
-    """The buffer of indirect draw commands, in which drawing writes the count of indices."""
+    """Add the buffer of indirect draw commands; drawing writes the number of indices into it."""
     if pass_.scenes is not None and pass_.scenes.drawIndirectBuffer:
         resource = Resource("buffer", pass_.scenes.drawIndirectBuffer)
         access.add_read(resource)
@@ -79,7 +81,7 @@ def add_commands(access: Access, pass_: Pass) -> None:
 
 
 def add_process(access: Access, pass_: Pass) -> None:
-    """What pre- and post-process items read and write."""
+    """Add what pre- and post-process items read and write."""
     for item in [*pass_.preProcess, *pass_.postProcess]:
         if isinstance(item, ProcessTexture):
             resource = texture(item.name, item.fromLibrary)
@@ -90,16 +92,17 @@ def add_process(access: Access, pass_: Pass) -> None:
 
 
 def add_target(access: Access, project: Project, pass_: Pass, clears: bool) -> None:
-    """The textures that a pass draws into, or the window.
+    """Add the textures that a pass draws into, or the window.
 
-    ``clears``: the class clears its target first, unless the pass says otherwise.
+    ``clears``: passes of the class clear their target first, unless COLOR_CLEAR or DEPTH_CLEAR are
+    false.
     """
     if pass_.renderTarget is None:
         access.add_write(WINDOW)
         return
     owner = project.target_of(pass_)
     if owner is None:
-        if pass_.renderTarget.sameas:  # of a pass that draws into the window
+        if pass_.renderTarget.sameas:  # the earlier pass draws into the window
             access.add_write(WINDOW)
         return
     library, target = owner

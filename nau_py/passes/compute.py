@@ -1,4 +1,4 @@
-"""Class ``compute``: runs a compute shader (docs/format.md, 4.4)."""
+"""Class ``compute``: run a compute shader (docs/format.md, 4.4)."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ class ComputeClass(PassClass):
         return access
 
     def groups(self, pass_: ComputePass, frame: FrameContext) -> tuple[int, int, int]:
-        """Work groups along x, y, z; DIM_* child tags override the material's numbers."""
+        """Return the work groups along x, y, z; DIM_* child tags override those of the material."""
         counts = []
         for axis in "XYZ":
             if f"DIM_{axis}" in pass_.settings:

@@ -1,4 +1,4 @@
-"""Class ``default``: draws its scenes with the mapped materials (docs/format.md, 4.4)."""
+"""Class ``default``: draw scenes with the mapped materials (docs/format.md, 4.4)."""
 
 from __future__ import annotations
 

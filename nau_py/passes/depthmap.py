@@ -1,4 +1,4 @@
-"""Class ``depthmap``: depth as the first light sees it (docs/format.md, 4.4)."""
+"""Class ``depthmap``: draw depth from the first light (docs/format.md, 4.4)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Class ``geometryPI`` of Nau's sample plug-in: a pass that brings geometry of its own."""
+"""Class ``geometryPI`` of Nau's sample plug-in: a pass with geometry of its own."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from nau_py.scene.readers.model_material import PRIMITIVE_MATERIAL
 
 @lru_cache(maxsize=1)
 def _plane() -> SceneObject:
-    """The square -1..1 in the plane y = 0: positions only."""
+    """Return the square -1..1 in the plane y = 0, with positions only."""
     corners = np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1]], np.float32)
     faces = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
     mesh = Mesh({"position": pad4(corners, 1.0)}, [Group(PRIMITIVE_MATERIAL, faces)])
@@ -32,8 +32,8 @@ BLACK = (0.0, 0.0, 0.0, 0.0)
 class GeometryPluginClass(DefaultClass):
     """Draws its scenes and a plane, with depth clamping, as Nau's sample plug-in does.
 
-    As in the plug-in, the window is cleared before the viewport is set, so in black, and the lights
-    of the pass are not set: shaders see the default light.
+    As in the plug-in, the window is cleared to black, since the viewport is set later, and the
+    lights of the pass are not set: shaders see the default light.
     """
 
     def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:

@@ -1,4 +1,4 @@
-"""The camera of a light that a depth map is drawn from (docs/format.md, 4.4)."""
+"""Camera of a light that draws a depth map (docs/format.md, 4.4)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from nau_py.scene.mesh import F64
 
 
 def frustum_corners(camera: CameraState, aspect: float, near: float, far: float) -> F64:
-    """The eight corners of a camera's frustum between two distances, world space (8, 3)."""
+    """Return the eight corners of a frustum between two distances, world space, (8, 3)."""
     corners = []
     for distance in (near, far):
         if camera.ortho:
@@ -26,7 +26,7 @@ def frustum_corners(camera: CameraState, aspect: float, near: float, far: float)
 
 
 def light_camera(name: str, light: LightState, corners: F64) -> CameraState:
-    """The orthographic camera of ``light``, fitted exactly to ``corners`` (world space)."""
+    """Return the orthographic camera of ``light``, fitted to ``corners`` (world space, (8, 3))."""
     state = CameraState(name, light.vector("POSITION"), light.vector("DIRECTION"), ortho=True)
     seen = corners @ state.view_matrix()[:3, :3].T + state.view_matrix()[:3, 3]
     low, high = seen.min(axis=0), seen.max(axis=0)

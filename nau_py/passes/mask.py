@@ -1,4 +1,4 @@
-"""Class ``mask``: draws what is seen where, and writes the weight of each pixel."""
+"""Class ``mask``: draws the visible surfaces and writes the weight of each pixel."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from nau_py.passes.drawing import begin_drawing, camera_context, draw_objects, r
 from nau_py.passes.frame import FrameContext, View
 from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
+from nau_py.raytrace.selection.weights import Visible, weights
 from nau_py.scene.transforms import to_unit_cube
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ MASK_FORMATS = ["RGBA32F", "RGBA16F"]
 
 
 def selectors(pass_: MaskPass) -> list[Any]:
-    """Every selector of the pass, those inside others as well."""
+    """Return every selector of the pass, nested ones included."""
     return [node for top in pass_.select for node in top.walk()]
 
 
@@ -84,7 +85,6 @@ class MaskClass(PassClass):
         return access
 
     def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
-        from nau_py.raytrace.selection.weights import weights
 
         assert isinstance(pass_, MaskPass)
         view = begin_drawing(pass_, frame, frame.world.camera(pass_.camera_name))
@@ -116,7 +116,7 @@ class MaskClass(PassClass):
         return PassReport(pixels=view.pixels, notes=(note,))
 
     def _item(self, frame: FrameContext, source: RenderMaterial, number: int) -> RenderMaterial:
-        """``source`` as the item shader draws it: its state, and ``number`` for a colour."""
+        """Return the material of the item shader: the state of ``source``, ``number`` as colour."""
         plain = frame.world.materials.get(DEFAULT_LIBRARY, ITEM_MATERIAL)
         assert plain is not None
         state = {k: v for k, v in source.state.items() if k not in ("BLEND", "ALPHA_TEST")}
@@ -129,9 +129,9 @@ class MaskClass(PassClass):
         view: View,
         seen: NDArray[np.float32],
         materials: list[tuple[str, RenderMaterial | None]],
-    ) -> Any:
-        from nau_py.raytrace.selection.weights import Visible
-
+    ) -> Visible:
+        """Return the input of the selectors. ``seen``: position and item number of each pixel,
+        (height, width, 4), row 0 at the bottom."""
         visible = Visible(
             seen[..., :3],
             np.rint(seen[..., 3]).astype(np.int32) - 1,
@@ -151,7 +151,7 @@ class MaskClass(PassClass):
 
 
 def _unit_cube(frame: FrameContext, name: str | None) -> NDArray[np.float64]:
-    """World to the unit cube of a camera, as it last drew."""
+    """Return the matrix from world space to the unit cube of a camera as it last drew, (4, 4)."""
     camera = frame.world.camera(name)
     rect = frame.session.camera_rects.get(camera.name) or frame.world.viewport(camera.viewport)
     projection = camera.projection_matrix(rect.aspect)

@@ -1,4 +1,4 @@
-"""The faults of a project's models, found without drawing anything."""
+"""Faults of a project's models, found without drawing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from nau_py.scene.world import World
 
 
 def model_faults(project: Project) -> list[Diagnostic]:
-    """What loading every model of the project tells, and what its raytrace passes leave out.
+    """Load every model of the project; return its faults, and the faces that rays leave out.
 
     Needs neither OpenGL nor Embree; executes nothing.
     """

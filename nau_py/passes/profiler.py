@@ -1,4 +1,4 @@
-"""Class ``profiler``: what the passes of this frame have cost so far, written over the picture."""
+"""Class ``profiler``: times of the passes of this frame so far, written over the picture."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
 
 MARGIN, LINE, COLUMN = 10, 12, 150
-"""Pixels from the upper left corner, from line to line, and from names to times."""
+"""Distances in pixels: to the upper left corner, between lines, between names and times."""
 
 
 @register_pass("profiler")
@@ -46,7 +46,7 @@ class ProfilerClass(PassClass):
 def _text(
     lines: list[tuple[str, float]], width: int, height: int
 ) -> np.ndarray[tuple[int, int], np.dtype[np.bool_]]:
-    """Which pixels the lines cover, (height, width), row 0 at the bottom."""
+    """Return True for each pixel that the text covers, (height, width), row 0 at the bottom."""
     from PIL import Image, ImageDraw, ImageFont
 
     image = Image.new("L", (width, height))

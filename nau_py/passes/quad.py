@@ -1,9 +1,9 @@
-"""Class ``quad``: fills its viewport with a texture or a material (docs/format.md, 4.4)."""
+"""Class ``quad``: fill the viewport with a texture or a material (docs/format.md, 4.4)."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from nau_py.graph.contract import Access
 from nau_py.model.library import DEFAULT_LIBRARY, qualified
@@ -16,11 +16,9 @@ from nau_py.passes.drawing import begin_drawing, draw_context, draw_mesh, run_pr
 from nau_py.passes.frame import FrameContext
 from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
+from nau_py.scene.material import RenderMaterial, TextureBinding, default_material
 from nau_py.scene.primitives import quad
 from nau_py.scene.readers.model_material import QUAD_MATERIAL
-
-if TYPE_CHECKING:
-    from nau_py.scene.material import RenderMaterial
 
 
 class QuadTexture(Node):
@@ -59,9 +57,7 @@ class QuadClass(PassClass):
         return access
 
     def material(self, pass_: Pass, frame: FrameContext) -> RenderMaterial:
-        """The material of the quad: ``material``, else ``texture``, else a mapped ``__Quad``."""
-        from nau_py.scene.material import TextureBinding, default_material
-
+        """Return the material of the quad: ``material``, ``texture``, or a mapped ``__Quad``."""
         table = frame.world.materials
         if isinstance(pass_, QuadPass) and pass_.material is not None:
             library = pass_.material.fromLibrary or DEFAULT_LIBRARY

@@ -1,8 +1,7 @@
-"""Classes ``optixPrime`` and ``embree``: a buffer of rays to one of hits (docs/format.md, 7.3)."""
+"""Classes ``optixPrime`` and ``embree``: trace a buffer of rays (docs/format.md, 7.3)."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -21,13 +20,16 @@ from nau_py.passes.access import buffer
 from nau_py.passes.frame import FrameContext, Session
 from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
+from nau_py.passes.state import Stateless
+from nau_py.raytrace.tracing.geometry import RayGeometry
 
 if TYPE_CHECKING:
     from nau_py.raytrace.tracing.accelerator import Accelerator
 
 RAY_BYTES, HIT_BYTES = 32, 16
-"""Origin, tmin, direction, tmax as float32; t, triangle (int32), u, v."""
+"""Layout of a ray: origin, tmin, direction, tmax; of a hit: t, triangle (int32), u, v."""
 MISS = -1.0
+"""Distance and triangle of a ray without a hit."""
 
 
 class RayBuffer(Node):
@@ -43,7 +45,7 @@ class RayBuffer(Node):
 
 
 class RayCount(Node):
-    """How many rays: a number, or a place in a buffer."""
+    """Number of rays: a value, or a place in a buffer."""
 
     value: Annotated[int | str | None, Attr(DataType.INT, "Rays.", constant=True)] = None
     buffer: Annotated[str | None, Attr(doc="Buffer.", ref="buffer")] = None
@@ -61,7 +63,7 @@ class RayQueryPass(Pass):
 
 @register_pass("optixPrime", "embree")
 class RayQueryClass(PassClass):
-    """Traces rays that shaders have written; no program runs at the hits."""
+    """Traces a buffer of rays that shaders have written into a buffer of hits."""
 
     model = RayQueryPass
     parameters = (number("RAY_COUNT", DataType.INT, -1, "Rays to trace.", unit="rays"),)
@@ -77,6 +79,10 @@ class RayQueryClass(PassClass):
                 access.add_write(buffer(pass_.hits.buffer, pass_.hits.fromLibrary))
         return access
 
+    def prepare(self, pass_: Pass, session: Session) -> RayQueryState:
+        assert isinstance(pass_, RayQueryPass)
+        return RayQueryState(pass_, session)
+
     def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
         if not isinstance(pass_, RayQueryPass) or pass_.rays is None or pass_.hits is None:
             return PassReport()
@@ -85,13 +91,13 @@ class RayQueryClass(PassClass):
         if count <= 0:
             return PassReport()
         given = np.frombuffer(rays.read(count * RAY_BYTES), np.float32).reshape(-1, 8)
-        accelerator = frame.session.state(pass_, RayQueryState).accelerator()
+        accelerator = frame.session.state(pass_, self.prepare).accelerator()
         hits.write(_trace(accelerator, given).tobytes())
         frame.session.resources.barrier()
         return PassReport(rays={"query": count})
 
 
-class RayQueryState:
+class RayQueryState(Stateless):
     """Acceleration structure of the first object of the scene, in object space as in Nau."""
 
     def __init__(self, pass_: RayQueryPass, session: Session) -> None:
@@ -103,7 +109,6 @@ class RayQueryState:
     def accelerator(self) -> Accelerator:
         """Return the structure; build it again where the mesh has changed since the last call."""
         from nau_py.raytrace.tracing.accelerator import Accelerator
-        from nau_py.raytrace.tracing.geometry import RayGeometry
 
         objects = self._session.world.objects([self._scene])
         mesh = objects[0].mesh if objects else None
@@ -117,12 +122,6 @@ class RayQueryState:
             self._accelerator = Accelerator(RayGeometry(points, triangles, owner, [""]))
             self._version = version
         return self._accelerator
-
-    def reload_shaders(self, files: set[Path]) -> None:
-        """Do nothing: ray queries run no shader."""
-
-    def reload_programs(self) -> None:
-        """Do nothing: ray queries run no program."""
 
     def close(self) -> None:
         """Free the acceleration structure."""
@@ -139,7 +138,7 @@ def _storage(pass_: RayQueryPass, node: RayBuffer, frame: FrameContext) -> Any:
 
 
 def _count(pass_: RayQueryPass, frame: FrameContext, hit_bytes: int) -> int:
-    """RAY_COUNT, or ``rayCount``, or as many as the hits have room for."""
+    """Return the number of rays: RAY_COUNT, else ``rayCount``, else the capacity of the hits."""
     if "RAY_COUNT" in pass_.settings:
         return int(frame.project.value(pass_, "PASS", "RAY_COUNT")[0])
     node = pass_.rayCount
@@ -153,7 +152,7 @@ def _count(pass_: RayQueryPass, frame: FrameContext, hit_bytes: int) -> int:
 
 
 def _trace(accelerator: Accelerator, rays: NDArray[np.float32]) -> NDArray[np.void]:
-    """Nearest hits, which do for ANY as well; t < 0 where there is none."""
+    """Return the nearest hit of each ray, which is a valid one for ANY too; t < 0 for a miss."""
     origin, near, direction, far = rays[:, :3], rays[:, 3], rays[:, 4:7], rays[:, 7]
     start = origin + direction * np.maximum(near, 0)[:, None]
     found = accelerator.intersect(start, direction, np.maximum(far - near, 0))

@@ -25,8 +25,8 @@ P002 = rule(
     "P002",
     WARNING,
     "Pass class not supported",
-    "Nau or one of its plug-ins has the class, this version of nau_py does not. A pipeline with "
-    "such a pass does not run; the others do.",
+    "Nau has the class, this version of nau_py does not. A pipeline with such a pass does not run; "
+    "other pipelines do.",
     "<pass name='a' class='mesh'>",
     "<pass name='a' class='default'>",
 )
@@ -59,8 +59,8 @@ P005 = rule(
 P006 = rule(
     "P006",
     ERROR,
-    "Kinds of texture do not go together",
-    "Of the colour textures of a target all are cube maps, with one sample, or none is.",
+    "Cube maps beside other textures",
+    "The colour textures of a target are all cube maps, with one sample, or none of them is.",
     "<colors><color .../><cubemap .../></colors>",
     "<colors><cubemap .../><cubemap .../></colors>",
 )
@@ -146,8 +146,8 @@ def _kinds(project: Project, target: RenderTarget) -> Iterator[Diagnostic]:
     if cubes and len(cubes) < len(target.colors):
         yield P006.at(
             cubes[0].location,
-            f"render target '{target.name}': cube map '{cubes[0].name}' stands beside textures "
-            "that are none",
+            f"render target '{target.name}': cube map '{cubes[0].name}' is mixed with "
+            "textures that are not cube maps",
         )
     samples = int(project.value(target, "RENDER_TARGET", "SAMPLES")[0])
     if cubes and samples > 1:

@@ -468,8 +468,8 @@ def test_asset_findings(folder: Folder, assets: str, expected: str) -> None:
         (
             '<color name="c" internalFormat="RGBA32F"/>',
             '<cubemap name="c" internalFormat="RGBA32F"/><color name="e" internalFormat="RGBA"/>',
-            "P006 error `cubemap` render target 'rt': cube map 'c' stands beside textures that are "
-            "none",
+            "P006 error `cubemap` render target 'rt': cube map 'c' is mixed with textures that are "
+            "not cube maps",
         ),
         (
             '<SIZE width=8 height=8 />\n<colors><color name="c" internalFormat="RGBA32F"/>',
