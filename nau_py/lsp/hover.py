@@ -83,5 +83,6 @@ def _attribute(attribute: Attribute) -> str:
     if attribute.minimum is not None or attribute.maximum is not None:
         low = "" if attribute.minimum is None else f"{attribute.minimum:g}"
         high = "" if attribute.maximum is None else f"{attribute.maximum:g}"
-        words.append(f"from {low} to {high}" if low and high else f"at least {low}")
+        one = f"at least {low}" if low else f"at most {high}"
+        words.append(f"from {low} to {high}" if low and high else one)
     return "; ".join(words) + "."

@@ -320,8 +320,14 @@ def _setting(
             yield from _constant(project, part, what, where)
             continue
         if (low is not None and part < low) or (high is not None and part > high):
-            limits = f"at least {low:g}" if high is None else f"from {low:g} to {high:g}"
-            yield V006.at(where, f"{what} is {part:g}; it must be {limits}")
+            yield V006.at(where, f"{what} is {part:g}; it must be {_limits(low, high)}")
+
+
+def _limits(low: float | None, high: float | None) -> str:
+    """Return the legal numbers in words. One of the bounds is given."""
+    if low is None:
+        return f"at most {high:g}"
+    return f"at least {low:g}" if high is None else f"from {low:g} to {high:g}"
 
 
 @check
