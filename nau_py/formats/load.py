@@ -22,7 +22,7 @@ from nau_py.model.project import ProjectFile
 from nau_py.model.values import DataType
 from nau_py.process.paths import resolve
 from nau_py.syntax.element import Element
-from nau_py.syntax.tolerant import XmlSyntaxError
+from nau_py.syntax.parse_error import ParseError
 from nau_py.syntax.xml import parse_xml
 
 BUILTIN_LIBRARY = Path(__file__).parent / "builtin" / "system.mlib"
@@ -77,7 +77,7 @@ class Reader:
                 root = YamlReader(str(path), self.registry).node(tag, data, cls, where)
             else:
                 root = parse_xml(text, str(path), self.problems)
-        except XmlSyntaxError as error:
+        except ParseError as error:
             self.problems.append(Problem(ProblemKind.SYNTAX, error.location, detail=error.message))
             return None
         except RecursionError:

@@ -26,7 +26,7 @@ from nau_py.model.values import (
     to_scalar,
 )
 from nau_py.syntax.element import Element
-from nau_py.syntax.tolerant import XmlSyntaxError
+from nau_py.syntax.parse_error import ParseError
 
 
 def _text(value: object) -> str:
@@ -198,18 +198,18 @@ class YamlReader:
 
 
 def load_yaml(text: str, file: str) -> CommentedMap:
-    """Parse YAML (safe: no tags are executed). Raises :class:`XmlSyntaxError` with a position."""
+    """Parse YAML (safe: no tags are executed). Raises :class:`ParseError` with a position."""
     try:
         data = YAML(typ="rt", pure=True).load(text)
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = Location(file, mark.line + 1, mark.column + 1) if mark else Location(file, 1, 1)
-        raise XmlSyntaxError(where, str(error.problem or error.context)) from None
+        raise ParseError(where, str(error.problem or error.context)) from None
     except (YAMLError, ValueError) as error:  # characters that YAML forbids, numbers beyond reason
         first = str(error).splitlines()[0]
-        raise XmlSyntaxError(Location(file, 1, 1), first) from None
+        raise ParseError(Location(file, 1, 1), first) from None
     if not isinstance(data, CommentedMap):
-        raise XmlSyntaxError(Location(file, 1, 1), "a mapping is expected at the top")
+        raise ParseError(Location(file, 1, 1), "a mapping is expected at the top")
     return data
 
 

@@ -1,54 +1,180 @@
-"""XML text to elements and back."""
+"""Read Nau's XML dialect into elements, and write elements as clean XML.
+
+The dialect is described in docs/format.md, section 1.1. The reader makes one pass over the tokens
+of :mod:`nau_py.syntax.xml_tokens`. It expands no entities but the five of XML and character
+references, reads no DOCTYPE, and opens no other file.
+"""
 
 from __future__ import annotations
 
-from io import BytesIO
+import re
+from bisect import bisect_right
 from xml.sax.saxutils import quoteattr
-
-from lxml import etree
 
 from nau_py.diagnostics.location import Location
 from nau_py.diagnostics.problem import Problem, ProblemKind
 from nau_py.syntax.element import Element
-from nau_py.syntax.tolerant import XmlSyntaxError, repair
+from nau_py.syntax.parse_error import ParseError
+from nau_py.syntax.xml_tokens import Token, TokenKind, decode, is_name, tokenise
 
 _INDENT = "  "
 _WIDTH = 100
+_MOST_LEVELS = 256
+"""Depth at which elements are refused: their tree is walked by recursion."""
+_FORBIDDEN = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+"""Characters that XML 1.0 (production 2, ``Char``) does not allow."""
 
 
 def parse_xml(text: str, file: str, problems: list[Problem]) -> Element:
-    """The root element of ``text``, written in Nau's dialect or in clean XML.
+    """Read the root element of ``text``, written in Nau's dialect or in clean XML.
 
-    Raises :class:`~nau_py.syntax.tolerant.XmlSyntaxError` where the text has no reading.
+    Stray text between tags is ignored and added to ``problems``. Whatever follows the root element
+    is ignored, as Nau does. Raises :class:`~nau_py.syntax.parse_error.ParseError` at the first
+    place that cannot be read.
     """
-    repaired = repair(text, file)
-    for where, stray in repaired.stray:
-        problems.append(Problem(ProblemKind.STRAY_TEXT, where, value=stray[:60]))
-    parser = etree.XMLParser(
-        resolve_entities=False, no_network=True, load_dtd=False, remove_blank_text=True
-    )
-    try:
-        root = etree.parse(BytesIO(repaired.text.encode("utf-8")), parser).getroot()
-    except etree.XMLSyntaxError as error:
-        raise XmlSyntaxError(Location(file, 1, 1), str(error.msg)) from None
-    tags = iter(repaired.tags)
+    return _Parser(text, file).parse(problems)
 
-    def convert(node: etree._Element) -> Element:
-        tag = next(tags)
-        element = Element(
-            str(node.tag),
-            {str(k): str(v) for k, v in node.attrib.items()},
-            location=tag.location,
-            attribute_locations=tag.attributes,
-        )
-        element.children = [convert(child) for child in node]
-        return element
 
-    return convert(root)
+class _Parser:
+    def __init__(self, text: str, file: str) -> None:
+        self.text = text
+        self.file = file
+        self.tokens = tokenise(text)
+        self.lines = [0] + [found.end() for found in re.finditer("\n", text)]
+        self.open: list[Element] = []
+        self.stray: list[Problem] = []
+        self.forbidden = _FORBIDDEN.search(text) is not None
+
+    def parse(self, problems: list[Problem]) -> Element:
+        """Read up to the end of the root element."""
+        for token in self.tokens:
+            root = self._take(token)
+            if root is not None:
+                problems += self.stray
+                return root
+        if self.open:
+            element = self.open[-1]
+            message = f"element <{element.tag}> is not closed: no </{element.tag}> follows"
+            raise ParseError(element.location, message)
+        raise self._error(0, "the document is empty: it has no root element")
+
+    def _take(self, token: Token) -> Element | None:
+        """Take one token between tags. Return the root element when it ends here."""
+        kind = token.kind
+        if kind is TokenKind.TEXT:
+            self._take_text(token)
+        elif kind is TokenKind.START:
+            return self._take_start_tag(token)
+        elif kind is TokenKind.END:
+            return self._take_end_tag(token)
+        elif kind is TokenKind.COMMENT and not (len(token.text) > 6 and token.text[-3:] == "-->"):
+            raise self._error(token.offset + 4, "the comment is not closed: no '-->' follows")
+        elif kind is TokenKind.DECLARATION and token.text[-1] != ">":
+            raise self._error(token.offset, "the declaration is not closed: no '>' follows")
+        return None
+
+    def _take_text(self, token: Token) -> None:
+        words = token.text.strip()
+        if not words:
+            return
+        offset = token.offset + token.text.index(words)
+        if not self.open:
+            raise self._error(offset, f"text before the root element: {words[:40]!r}")
+        where = self._location(offset)
+        self.stray.append(Problem(ProblemKind.STRAY_TEXT, where, value=words[:60]))
+
+    def _take_end_tag(self, token: Token) -> Element | None:
+        name = self._name(token, 2)
+        following = self._next_solid()
+        while following is not None and following.kind is TokenKind.JUNK:
+            following = self._next_solid()
+        if following is None or following.kind is not TokenKind.CLOSE:
+            raise self._error(token.end, f"end tag </{name} is not closed: no '>' follows")
+        if not self.open or self.open[-1].tag != name:
+            last = self.open[-1] if self.open else None
+            opened = f"<{last.tag}> from {last.location}" if last else "nothing"
+            message = f"end tag </{name}> does not match: {opened} is open"
+            raise self._error(token.offset, message)
+        element = self.open.pop()
+        return None if self.open else element
+
+    def _take_start_tag(self, token: Token) -> Element | None:
+        element = Element(self._name(token, 1), location=self._location(token.offset))
+        if len(self.open) == _MOST_LEVELS:
+            raise ParseError(element.location, "elements are nested too deeply")
+        while True:
+            following = self._next_solid()
+            if following is None:
+                message = f"start tag <{element.tag} is not closed: no '>' follows"
+                raise ParseError(element.location, message)
+            if following.kind is TokenKind.CLOSE or following.kind is TokenKind.CLOSE_EMPTY:
+                break
+            self._take_attribute(element, following)
+        if self.open:
+            self.open[-1].children.append(element)
+        if following.kind is TokenKind.CLOSE:
+            self.open.append(element)
+        return None if self.open else element
+
+    def _take_attribute(self, element: Element, token: Token) -> None:
+        name, tag = token.text, element.tag
+        if token.kind is not TokenKind.NAME or not is_name(name):
+            raise self._unexpected(token.offset, f"attribute name in <{tag}>")
+        if name in element.attributes:
+            raise self._error(token.offset, f"attribute '{name}' of <{tag}> is given twice")
+        equals = self._next_solid()
+        if equals is None or equals.kind is not TokenKind.EQUALS:
+            message = f"attribute '{name}' of <{tag}> has no value ('=' expected)"
+            raise self._error(token.offset, message)
+        value = self._next_solid()
+        if value is None or value.kind is not TokenKind.VALUE:
+            offset = len(self.text) if value is None else value.offset
+            raise self._error(offset, f"attribute '{name}' of <{tag}> has no value")
+        offset, raw = value.offset, value.text
+        if raw[0] in "\"'":
+            if not value.closed:
+                raise self._error(offset, f"{_subject(name, tag)} has no closing {raw[0]}")
+            offset, raw = offset + 1, raw[1:-1]
+        elif '"' in raw or "'" in raw:
+            raise self._error(offset, f"{_subject(name, tag)} has a quote inside: {raw}")
+        if self.forbidden and (found := _FORBIDDEN.search(raw)):
+            message = f"has a character that XML forbids: U+{ord(found[0]):04X}"
+            raise self._error(offset + found.start(), f"{_subject(name, tag)} {message}")
+        element.attributes[name] = decode(raw)
+        element.attribute_locations[name] = self._location(offset)
+
+    def _name(self, token: Token, marks: int) -> str:
+        """Return the element name of a tag that begins with this number of marks."""
+        name = token.text[marks:]
+        if not is_name(name):
+            raise self._unexpected(token.offset + marks, "element name")
+        return name
+
+    def _next_solid(self) -> Token | None:
+        """Return the next token that is not white space; None at the end of the text."""
+        for token in self.tokens:
+            if token.kind is not TokenKind.SPACE:
+                return token
+        return None
+
+    def _unexpected(self, offset: int, expected: str) -> ParseError:
+        found = self.text[offset : offset + 12]
+        return self._error(offset, f"{expected} expected, found {found!r}")
+
+    def _error(self, offset: int, message: str) -> ParseError:
+        return ParseError(self._location(min(offset, max(len(self.text) - 1, 0))), message)
+
+    def _location(self, offset: int) -> Location:
+        line = bisect_right(self.lines, offset)
+        return Location(self.file, line, offset - self.lines[line - 1] + 1)
+
+
+def _subject(attribute: str, tag: str) -> str:
+    return f"value of attribute '{attribute}' of <{tag}>"
 
 
 def format_xml(root: Element) -> str:
-    """Clean, indented XML."""
+    """Write an element as clean, indented XML."""
     lines = ['<?xml version="1.0" encoding="UTF-8"?>']
     _format(root, 0, lines)
     return "\n".join(lines) + "\n"
