@@ -13,20 +13,12 @@ from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import BUILT_IN, PARAMETERS
 from nau_py.model.effects import EFFECTS
 from nau_py.model.library import MaterialLibrary
-from nau_py.model.node import (
-    Attr,
-    Child,
-    Inline,
-    Items,
-    Node,
-    Settings,
-    Variants,
-    file_key,
-)
+from nau_py.model.node import Node
 from nau_py.model.pass_classes import PASS_CLASSES
 from nau_py.model.passes import Pass
 from nau_py.model.physics import PhysicsLibrary
 from nau_py.model.project import ProjectFile
+from nau_py.model.schema import ChildField, NodeSchema, SettingsField, schema_of
 from nau_py.model.values import format_scalar
 from nau_py.passes import pass_classes
 from nau_py.process.files import write_text
@@ -45,51 +37,46 @@ def _cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def _attributes(cls: type[Node]) -> list[str]:
+def _attributes(schema: NodeSchema) -> list[str]:
     rows = []
-    for name, marker in cls.markers().items():
-        if not isinstance(marker, Attr):
-            continue
-        kind = marker.type.value if marker.type.value != "STRING" else "text"
-        if marker.values:
-            kind = "one of " + ", ".join(f"`{v}`" for v in marker.values)
-        elif marker.ref:
-            kind = f"name of a {marker.ref}"
-        elif marker.file:
-            kind = f"{marker.file} file"
-        needed = "yes" if marker.required else ""
-        rows.append(f"| `{file_key(name, marker)}` | {kind} | {needed} | {_cell(marker.doc)} |")
+    for attribute in schema.attributes:
+        kind = attribute.type.value if attribute.type.value != "STRING" else "text"
+        if attribute.values:
+            kind = "one of " + ", ".join(f"`{v}`" for v in attribute.values)
+        elif attribute.ref:
+            kind = f"name of a {attribute.ref}"
+        elif attribute.file:
+            kind = f"{attribute.file} file"
+        needed = "yes" if attribute.required else ""
+        rows.append(f"| `{attribute.name}` | {kind} | {needed} | {_cell(attribute.doc)} |")
     if not rows:
         return []
     return ["", "| attribute | type | required | |", "|---|---|---|---|", *rows]
 
 
-def _children(cls: type[Node]) -> tuple[list[str], list[type[Node]]]:
-    lines: list[str] = []
-    found: list[type[Node]] = []
-    for name, marker in cls.markers().items():
-        if isinstance(marker, Child):
-            found.append(marker.cls)
-            lines.append(
-                f"- `<{marker.tag or name}>` ([{marker.cls.__name__}]"
-                f"(#{marker.cls.__name__.lower()})) {marker.doc}".rstrip()
-            )
-        elif isinstance(marker, Items):
-            found.append(marker.cls)
-            where = f"`<{marker.wrapper}>` of " if marker.wrapper else ""
-            link = f"[{marker.cls.__name__}](#{marker.cls.__name__.lower()})"
-            lines.append(f"- {where}`<{marker.tag}>` ({link}), repeated. {marker.doc}".rstrip())
-        elif isinstance(marker, Variants):
-            found += marker.classes.values()
-            tags = " or ".join(f"`<{tag}>`" for tag in marker.classes)
-            lines.append(f"- `<{marker.wrapper}>` of {tags}, in order. {marker.doc}".rstrip())
-        elif isinstance(marker, Settings):
-            link = f"[{marker.type}](#{marker.type.lower()})"
-            lines.append(f"- attributes of the set {link} as child tags. {marker.doc}".rstrip())
-        elif isinstance(marker, Inline):
-            link = f"[{marker.type}](#{marker.type.lower()})"
-            lines.append(f"- attributes of the set {link} as XML attributes. {marker.doc}".rstrip())
-    return (["", *lines] if lines else []), found
+def _link(name: str) -> str:
+    return f"[{name}](#{name.lower()})"
+
+
+def _children(part: ChildField) -> str:
+    if part.mixed:
+        tags = " or ".join(f"`<{tag}>`" for tag in part.classes)
+        return f"- `<{part.wrapper}>` of {tags}, in order. {part.doc}"
+    link = _link(part.cls.__name__)
+    if not part.many:
+        return f"- `<{part.tag}>` ({link}) {part.doc}"
+    where = f"`<{part.wrapper}>` of " if part.wrapper else ""
+    return f"- {where}`<{part.tag}>` ({link}), repeated. {part.doc}"
+
+
+def _settings(part: SettingsField) -> str:
+    form = "child tags" if part.as_tags else "XML attributes"
+    return f"- attributes of the set {_link(part.type)} as {form}. {part.doc}"
+
+
+def _content(schema: NodeSchema) -> list[str]:
+    lines = schema.each_content(_children, _settings) + [_settings(p) for p in schema.inline]
+    return ["", *(line.rstrip() for line in lines)] if lines else []
 
 
 def _parameters(cls: type[Node]) -> list[str]:
@@ -146,15 +133,15 @@ def reference_page() -> str:
         if cls in done:
             continue
         done.add(cls)
-        children, found = _children(cls)
+        schema = schema_of(cls)
         doc = (cls.__doc__ or "").strip().splitlines()[0]
-        lines += ["", f"### {cls.__name__}", "", doc, *_attributes(cls), *children]
+        lines += ["", f"### {cls.__name__}", "", doc, *_attributes(schema), *_content(schema)]
         lines += _parameters(cls)
         if cls is Pass:
-            found += PASS_CLASSES.values()
             named = ", ".join(f"`{n}` ({c.__name__})" for n, c in PASS_CLASSES.items())
             lines += ["", f"Pass classes: {named}."]
-        waiting = found + waiting
+        found = [cls for part in schema.children for cls in part.classes.values()]
+        waiting = found + ([*PASS_CLASSES.values()] if cls is Pass else []) + waiting
     lines += _sets()
     lines += ["", "## Built-in ray programs", "", "| proc | kind | |", "|---|---|---|"]
     lines += [f"| `{n}` | {kind} | {doc} |" for n, (kind, doc) in BUILTIN_PROGRAMS.items()]

@@ -72,7 +72,8 @@ def fmt(
 
 
 def _schema(kind: Kind, output: Path | None) -> int:
-    from nau_py.formats.schema import json_schema, xsd
+    from nau_py.formats.json_schema import json_schema
+    from nau_py.formats.xsd import xsd
     from nau_py.model.attributes import Registry
 
     registry = Registry()

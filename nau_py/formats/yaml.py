@@ -16,7 +16,8 @@ from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from nau_py.diagnostics.location import Location
 from nau_py.formats.settings import keys_of
 from nau_py.model.attributes import Registry
-from nau_py.model.node import Attr, Child, Inline, Items, Marker, Node, Settings, Variants, file_key
+from nau_py.model.node import Node
+from nau_py.model.schema import ChildField, NodeSchema, schema_of
 from nau_py.model.values import (
     DataType,
     Scalar,
@@ -36,7 +37,7 @@ def _text(value: object) -> str:
 
 
 class YamlReader:
-    """Builds elements from YAML data; the classes say what is an attribute and what a child."""
+    """Builds elements from YAML data, by the description of each class."""
 
     def __init__(self, file: str, registry: Registry) -> None:
         self.file = file
@@ -60,68 +61,55 @@ class YamlReader:
         return Location(self.file, line + 1, column + 1)
 
     def node(self, tag: str, data: object, cls: type[Node], where: Location) -> Element:
-        """The element ``tag`` of class ``cls`` that ``data`` describes."""
+        """Build the element ``tag`` of class ``cls`` that ``data`` describes."""
         element = Element(tag, location=where)
-        markers = cls.markers()
+        schema = schema_of(cls)
         if not isinstance(data, CommentedMap):
-            return self._short(element, data, markers, where)
-        names = {file_key(n, m): m for n, m in markers.items() if isinstance(m, Attr)}
+            return self._short(element, data, schema, where)
         for key, value in data.items():
-            self._entry(element, data, str(key), value, markers, names)
+            self._entry(element, data, str(key), value, schema)
         return element
 
     def _short(
-        self, element: Element, data: object, markers: dict[str, Marker], where: Location
+        self, element: Element, data: object, schema: NodeSchema, where: Location
     ) -> Element:
-        if isinstance(data, CommentedSeq):
-            only = [m for m in markers.values() if isinstance(m, Items) and not m.wrapper]
-            if len(only) == 1:
-                element.children = self._list(data, only[0])
-                return element
-        if data is not None:
-            first = next(
-                (file_key(n, m) for n, m in markers.items() if isinstance(m, Attr)), "name"
-            )
+        """Read a node that is written as its sole list, or as its first attribute."""
+        lists = schema.plain_lists
+        if isinstance(data, CommentedSeq) and len(lists) == 1:
+            element.children = self._list(data, lists[0])
+        elif data is not None:
+            first = schema.attributes[0].name if schema.attributes else "name"
             element.attributes[first] = _text(data)
             element.attribute_locations[first] = where
         return element
 
     def _entry(
-        self,
-        element: Element,
-        data: CommentedMap,
-        key: str,
-        value: object,
-        markers: dict[str, Marker],
-        names: dict[str, Attr],
+        self, element: Element, data: CommentedMap, key: str, value: object, schema: NodeSchema
     ) -> None:
         where = self._key_at(data, key)
         scalar = not isinstance(value, CommentedMap | CommentedSeq)
-        if key in names and scalar:
-            element.attributes[key] = _text(value)
-            element.attribute_locations[key] = self._at(data, key)
-            return
-        for name, marker in markers.items():
-            if isinstance(marker, Child) and key == (marker.tag or name):
-                element.children.append(self.node(key, value, marker.cls, where))
-                return
-            if isinstance(marker, Items | Variants) and key == marker.wrapper:
-                element.children += self._wrapper(key, value, marker, where)
-                return
-            if isinstance(marker, Items) and not marker.wrapper and key == marker.tag:
-                element.children += self._list(value, marker)
-                return
-            if isinstance(marker, Settings):
-                attribute = self.registry[marker.type].get(key)
-                if attribute is not None:
-                    repeats = self._settings(key, value, keys_of(attribute), where)
-                    element.children += repeats
-                    return
-        if scalar:
-            element.attributes[key] = _text(value)
-            element.attribute_locations[key] = self._at(data, key)
+        part = schema.by_tag.get(key)
+        if key in schema.by_name and scalar:
+            self._set(element, data, key, value)
+        elif part is not None and (part.wrapper or not part.mixed):
+            element.children += self._part(key, value, part, where)
+        elif (found := schema.setting(key, self.registry)) is not None:
+            element.children += self._settings(key, value, keys_of(found[1]), where)
+        elif scalar:
+            self._set(element, data, key, value)
         else:
             element.children += self._unknown(key, value, where)
+
+    def _set(self, element: Element, data: CommentedMap, key: object, value: object) -> None:
+        element.attributes[str(key)] = _text(value)
+        element.attribute_locations[str(key)] = self._at(data, key)
+
+    def _part(self, key: str, value: object, part: ChildField, where: Location) -> list[Element]:
+        if part.wrapper:
+            return self._wrapper(key, value, part, where)
+        if part.many:
+            return self._list(value, part)
+        return [self.node(key, value, part.cls, where)]
 
     def _settings(self, key: str, value: object, keys: list[str], where: Location) -> list[Element]:
         if isinstance(value, CommentedSeq) and value and isinstance(value[0], CommentedMap):
@@ -139,47 +127,41 @@ class YamlReader:
             element.attribute_locations = {keys[0]: where}
         return [element]
 
-    def _wrapper(
-        self, key: str, value: object, marker: Items | Variants, where: Location
-    ) -> list[Element]:
-        """The wrapper, and its repetitions, which Nau ignores."""
+    def _wrapper(self, key: str, value: object, part: ChildField, where: Location) -> list[Element]:
+        """Build the wrapper of a list, and its repetitions, which Nau ignores."""
         element = Element(key, location=where)
         if not isinstance(value, CommentedMap):
-            element.children = self._list(value, marker)
+            element.children = self._list(value, part)
             return [element]
         repeated: list[Element] = []
         for inner, data in value.items():
             if str(inner) == "items":
-                element.children += self._list(data, marker)
+                element.children += self._list(data, part)
             elif str(inner) == "repeated":
                 repeated += self._unknown(key, data, self._key_at(value, inner))
             elif isinstance(data, CommentedMap | CommentedSeq):
                 element.children += self._unknown(str(inner), data, self._key_at(value, inner))
             else:
-                element.attributes[str(inner)] = _text(data)
-                element.attribute_locations[str(inner)] = self._at(value, inner)
+                self._set(element, value, inner, data)
         return [element, *repeated]
 
-    def _list(self, value: object, marker: Items | Variants) -> list[Element]:
+    def _list(self, value: object, part: ChildField) -> list[Element]:
         items = value if isinstance(value, CommentedSeq) else [] if value is None else [value]
-        return [
-            self._item(item, marker, self._at(items, index)) for index, item in enumerate(items)
-        ]
+        return [self._item(item, part, self._at(items, index)) for index, item in enumerate(items)]
 
-    def _item(self, item: object, marker: Items | Variants, where: Location) -> Element:
-        if isinstance(marker, Variants):
-            if isinstance(item, CommentedMap) and len(item) == 1:
-                tag, data = next(iter(item.items()))
-                cls = marker.classes.get(str(tag))
-                if cls is not None:
-                    return self.node(str(tag), data, cls, where)
-            tag, cls = next(iter(marker.classes.items()))
-            return self.node(tag, item, cls, where)
-        cls = marker.cls
-        if marker.choose is not None and isinstance(item, CommentedMap):
-            probe = Element(marker.tag, {"class": _text(item.get("class", "default"))})
-            cls = marker.choose(probe)
-        return self.node(marker.tag, item, cls, where)
+    def _item(self, item: object, part: ChildField, where: Location) -> Element:
+        tag, data = part.tag, item
+        if part.mixed and isinstance(item, CommentedMap) and len(item) == 1:
+            written, inner = next(iter(item.items()))
+            if str(written) in part.classes:
+                tag, data = str(written), inner
+        attributes = {}
+        if part.choice is not None and isinstance(data, CommentedMap):
+            key = part.choice.attribute
+            attributes = {key: _text(data[key])} if key in data else {}
+        cls = part.class_of(tag, attributes)
+        assert cls is not None  # the tag is one of the field's
+        return self.node(tag, data, cls, where)
 
     def _unknown(self, tag: str, value: object, where: Location) -> list[Element]:
         if tag.startswith("<"):  # the name of an attribute too: see _append
@@ -214,78 +196,63 @@ def load_yaml(text: str, file: str) -> CommentedMap:
 
 
 def to_yaml(element: Element, cls: type[Node], registry: Registry) -> Any:
-    """Data for :func:`format_yaml`: the reverse of :meth:`YamlReader.node`."""
-    markers = cls.markers()
-    attributes = {file_key(n, m): m for n, m in markers.items() if isinstance(m, Attr)}
-    short = _shorten(element, markers, attributes, registry)
+    """Make data for :func:`format_yaml`: the reverse of :meth:`YamlReader.node`."""
+    schema = schema_of(cls)
+    short = _shorten(element, schema, registry)
     if short is not None:
         return short
     data = CommentedMap()
-    types = {key: marker.type for key, marker in attributes.items()}
-    for marker in markers.values():
-        if isinstance(marker, Inline):
-            types |= {a.name: a.type for a in registry[marker.type]}
+    types = {attribute.name: attribute.type for attribute in schema.attributes}
+    for part in schema.inline:
+        types |= {a.name: a.type for a in part.known(registry)}
     for key, text in element.attributes.items():
         data[key] = _native(text, types[key]) if key in types else text
     for child in element.children:
-        _add_child(data, child, markers, registry)
+        _add_child(data, child, schema, registry)
     return data
 
 
-def _shorten(
-    element: Element, markers: dict[str, Marker], attributes: dict[str, Attr], registry: Registry
-) -> Any:
-    first = next(iter(attributes), None)
-    if not element.children and list(element.attributes) == [first] and first is not None:
-        return _native(element.attributes[first], attributes[first].type)
-    only = [m for m in markers.values() if isinstance(m, Items) and not m.wrapper]
-    if len(only) == 1 and element.children and not element.attributes:
-        marker = only[0]
-        if all(c.tag == marker.tag for c in element.children):
-            items = [_item_data(c, marker, registry) for c in element.children]
-            return CommentedSeq(items)
-    return None
+def _shorten(element: Element, schema: NodeSchema, registry: Registry) -> Any:
+    """Write a node as its first attribute, or as its sole list, if it has nothing else."""
+    first = schema.attributes[0] if schema.attributes else None
+    if not element.children and first is not None and list(element.attributes) == [first.name]:
+        return _native(element.attributes[first.name], first.type)
+    lists = schema.plain_lists
+    if len(lists) != 1 or element.attributes or not element.children:
+        return None
+    if any(c.tag != lists[0].tag for c in element.children):
+        return None
+    return CommentedSeq([_item_data(c, lists[0], registry) for c in element.children])
 
 
-def _item_data(child: Element, marker: Items | Variants, registry: Registry) -> Any:
-    if isinstance(marker, Variants):
-        entry = CommentedMap()
-        entry[child.tag] = to_yaml(child, marker.classes[child.tag], registry)
-        return entry
-    cls = marker.choose(child) if marker.choose else marker.cls
-    return to_yaml(child, cls, registry)
+def _item_data(child: Element, part: ChildField, registry: Registry) -> Any:
+    cls = part.class_of(child.tag, child.attributes)
+    assert cls is not None  # the caller has looked at the tag
+    data = to_yaml(child, cls, registry)
+    return CommentedMap({child.tag: data}) if part.mixed else data
 
 
-def _add_child(
-    data: CommentedMap, child: Element, markers: dict[str, Marker], registry: Registry
-) -> None:
-    for name, marker in markers.items():
-        if (
-            isinstance(marker, Child)
-            and child.tag == (marker.tag or name)
-            and child.tag not in data
-        ):
-            data[child.tag] = to_yaml(child, marker.cls, registry)
+def _add_child(data: CommentedMap, child: Element, schema: NodeSchema, registry: Registry) -> None:
+    tag = child.tag
+    part = schema.by_tag.get(tag)
+    if part is None:
+        found = schema.setting(tag, registry)
+        if found is not None:
+            _add_setting(data, child, keys_of(found[1]), found[1].type)
             return
-        if isinstance(marker, Items | Variants):
-            if marker.wrapper and child.tag == marker.wrapper:
-                if child.tag in data:
-                    data[child.tag] = _repeat(data[child.tag], child)
-                else:
-                    data[child.tag] = _wrapper_data(child, marker, registry)
-                return
-            if not marker.wrapper and isinstance(marker, Items) and child.tag == marker.tag:
-                data.setdefault(child.tag, CommentedSeq()).append(
-                    _item_data(child, marker, registry)
-                )
-                return
-        if isinstance(marker, Settings):
-            attribute = registry[marker.type].get(child.tag)
-            if attribute is not None:
-                keys = keys_of(attribute)
-                _add_setting(data, child, keys, attribute.type)
-                return
-    _append(data, child.tag, _unknown_data(child))
+    elif part.wrapper:
+        if tag in data:
+            data[tag] = _repeat(data[tag], child)
+        else:
+            data[tag] = _wrapper_data(child, part, registry)
+        return
+    elif part.many and not part.mixed:
+        data.setdefault(tag, CommentedSeq()).append(_item_data(child, part, registry))
+        return
+    elif not part.many and tag not in data:
+        data[tag] = to_yaml(child, part.cls, registry)
+        return
+    _append(data, tag, _unknown_data(child))
 
 
 def _add_setting(data: CommentedMap, child: Element, keys: list[str], data_type: DataType) -> None:
@@ -310,16 +277,15 @@ def _add_setting(data: CommentedMap, child: Element, keys: list[str], data_type:
         data[child.tag] = sequence
 
 
-def _wrapper_data(child: Element, marker: Items | Variants, registry: Registry) -> Any:
-    tags = marker.classes if isinstance(marker, Variants) else {marker.tag: marker.cls}
-    known = [c for c in child.children if c.tag in tags]
-    items = CommentedSeq([_item_data(c, marker, registry) for c in known])
+def _wrapper_data(child: Element, part: ChildField, registry: Registry) -> Any:
+    known = [c for c in child.children if c.tag in part.classes]
+    items = CommentedSeq([_item_data(c, part, registry) for c in known])
     if not child.attributes and len(known) == len(child.children):
         return items
     data = CommentedMap(child.attributes)
     data["items"] = items
     for other in child.children:
-        if other.tag not in tags:
+        if other.tag not in part.classes:
             _append(data, other.tag, _unknown_data(other))
     return data
 

@@ -12,8 +12,9 @@ from nau_py.diagnostics.location import Location
 from nau_py.lsp.symbols import Symbol, Symbols
 from nau_py.model.linked import Project
 from nau_py.model.material import Material
-from nau_py.model.node import Attr, Node, file_key
+from nau_py.model.node import Node
 from nau_py.model.raytrace import BUILTIN, Program
+from nau_py.model.schema import AttributeField, schema_of
 from nau_py.model.shader import STAGES, Shader
 from nau_py.model.walk import nodes
 from nau_py.process.paths import resolve
@@ -46,22 +47,22 @@ def _links(project: Project, file: str) -> Iterator[Link]:
             continue
         if isinstance(node, Program) and node.file and node.proc:
             yield from _program(project, node)
-        for name, marker in node.markers().items():
-            value = getattr(node, name)
-            if not isinstance(marker, Attr) or not marker.file or not isinstance(value, str):
+        for attribute in schema_of(type(node)).attributes:
+            value = attribute.of(node)
+            if not attribute.file or not isinstance(value, str):
                 continue
-            path = _path(project, node, file_key(name, marker), marker, value)
+            path = _path(project, node, attribute, value)
             if path is not None and value != BUILTIN:
-                where = node.where(file_key(name, marker))
+                where = node.where(attribute.name)
                 yield Link(Symbol("file", value, value, where), (Location(str(path), 1, 1),))
         if isinstance(node, Material):
             yield from _uniforms(project, node)
 
 
-def _path(project: Project, node: Node, key: str, marker: Attr, value: str) -> Path | None:
-    if marker.file == "program":
+def _path(project: Project, node: Node, attribute: AttributeField, value: str) -> Path | None:
+    if attribute.file == "program":
         return stand_in(project.folder, value)
-    found = resolve(Path(node.where(key).file or ".").parent, value)
+    found = resolve(Path(node.where(attribute.name).file or ".").parent, value)
     return found.best if found.exists else None
 
 

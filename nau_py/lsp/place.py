@@ -1,4 +1,7 @@
-"""What may stand at a place of a file, by the models: the grammar that completion and hover use."""
+"""The grammar of a place in a file, for completion and hover.
+
+Derived from the description of each class (:mod:`nau_py.model.schema`).
+"""
 
 from __future__ import annotations
 
@@ -8,19 +11,10 @@ from dataclasses import dataclass
 from nau_py.formats.settings import keys_of
 from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import Registry
-from nau_py.model.node import (
-    Attr,
-    Child,
-    Inline,
-    Items,
-    Node,
-    Settings,
-    Variants,
-    file_key,
-)
+from nau_py.model.node import Attr, Node
 from nau_py.model.raytrace import EntryPoint, Program, RayMaterial, RayProgram
+from nau_py.model.schema import ChildField, SettingsField, schema_of
 from nau_py.model.values import DataType
-from nau_py.syntax.element import Element
 
 _OLD = {
     "optixEntryPoint": "rtEntryPoint",
@@ -34,7 +28,7 @@ _OLD = {
     "optixOutput": "rtOutput",
     "optixGeometryProgram": "rtGeometryProgram",
 }
-"""Elements of the old dialect and those that they are read as."""
+"""Elements of the old dialect, and their present names."""
 _OLD_PROGRAMS: dict[type[Node], type[Node]] = {RayMaterial: RayProgram, EntryPoint: Program}
 ITEM = "-"
 """The tag of a step into an item of a YAML list."""
@@ -51,7 +45,7 @@ class Inside:
 class Listing:
     """Within the list of an element: its wrapper, or in YAML the key of a plain list."""
 
-    marker: Items | Variants
+    part: ChildField
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +60,7 @@ Place = Inside | Listing | Leaf
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """An element or attribute that may stand at a place. ``attr``: how its value is written."""
+    """An element or attribute that is allowed at a place. ``attr`` describes its value."""
 
     name: str
     doc: str
@@ -75,14 +69,10 @@ class Entry:
     attribute: Attribute | None = None
 
 
-def _doc(cls: type[Node]) -> str:
-    return " ".join((cls.__doc__ or "").split())
-
-
 def enter(
     place: Place, tag: str, attributes: Mapping[str, str], registry: Registry
 ) -> Place | None:
-    """The place inside child ``tag``, as XML nests it; None where no such child is known."""
+    """Return the place inside child ``tag``, as XML nests it; None for an unknown child."""
     if isinstance(place, Leaf):
         return None
     if isinstance(place, Listing):
@@ -90,92 +80,79 @@ def enter(
     if tag == "optixProgram" and place.cls in _OLD_PROGRAMS:
         return Inside(_OLD_PROGRAMS[place.cls])
     tag = _OLD.get(tag, tag)
-    for name, marker in place.cls.markers().items():
-        if isinstance(marker, Child) and tag == (marker.tag or name):
-            return Inside(marker.cls)
-        if isinstance(marker, Items | Variants) and marker.wrapper:
-            if tag == marker.wrapper:
-                return Listing(marker)
-        elif isinstance(marker, Items | Variants):
-            found = item(Listing(marker), tag, attributes)
-            if found is not None:
-                return found
-        elif isinstance(marker, Settings):
-            attribute = registry.of(place.cls, marker.type).get(tag)
-            if attribute is not None:
-                return Leaf(attribute)
-    return None
+    schema = schema_of(place.cls)
+    part = schema.by_tag.get(tag)
+    if part is not None:
+        return Listing(part) if part.wrapper else item(Listing(part), tag, attributes)
+    found = schema.setting(tag, registry)
+    return Leaf(found[1]) if found is not None else None
 
 
 def enter_yaml(
     place: Place, key: str, attributes: Mapping[str, str], registry: Registry
 ) -> Place | None:
-    """The place behind ``key``, or in an :data:`ITEM`, as YAML nests it."""
+    """Return the place behind ``key``, or in an :data:`ITEM`, as YAML nests it."""
     if isinstance(place, Leaf):
         return None
     if isinstance(place, Listing):
-        if key == "items" or (key == ITEM and isinstance(place.marker, Variants)):
+        if key == "items" or (key == ITEM and place.part.mixed):
             return place  # the long form; an item is a map of one tag
         return item(place, key, attributes)
     plain = plain_lists(place.cls)
     if key == ITEM:
         return item(plain[0], key, attributes) if len(plain) == 1 else place
-    found = next((p for p in plain if p.marker.tag == key), None)  # type: ignore[union-attr]
+    found = next((p for p in plain if p.part.tag == key), None)
     return found or enter(place, key, attributes, registry)
 
 
 def plain_lists(cls: type[Node]) -> list[Listing]:
-    """The lists of a class that stand in no wrapper. One alone may be written for the node."""
-    markers = cls.markers().values()
-    return [Listing(m) for m in markers if isinstance(m, Items) and not m.wrapper]
+    """List the lists of a class that have no wrapper. A sole one may be written for the node."""
+    return [Listing(part) for part in schema_of(cls).plain_lists]
 
 
 def item(listing: Listing, tag: str, attributes: Mapping[str, str]) -> Place | None:
-    """The place inside an item of a list."""
-    marker = listing.marker
-    if isinstance(marker, Variants):
-        cls = marker.classes.get(tag)
-        return Inside(cls) if cls is not None else None
-    if _OLD.get(tag, tag) not in (marker.tag, ITEM):
-        return None
-    if marker.choose is not None:
-        return Inside(marker.choose(Element(marker.tag, dict(attributes))))
-    return Inside(marker.cls)
+    """Return the place inside an item of a list."""
+    part = listing.part
+    if not part.mixed:
+        tag = part.tag if tag == ITEM else _OLD.get(tag, tag)
+    cls = part.class_of(tag, attributes)
+    return Inside(cls) if cls is not None else None
 
 
 def children(place: Place, registry: Registry) -> list[Entry]:
-    """The elements that may stand at a place."""
+    """List the elements that are allowed at a place."""
     if isinstance(place, Leaf):
         return []
-    cls = place.cls if isinstance(place, Inside) else Node
-    markers = (
-        [("", place.marker)] if isinstance(place, Listing) else list(place.cls.markers().items())
-    )
-    found: list[Entry] = []
-    for name, marker in markers:
-        if isinstance(marker, Child):
-            found.append(Entry(marker.tag or name, marker.doc or _doc(marker.cls)))
-        elif isinstance(marker, Items | Variants) and marker.wrapper and name:
-            found.append(Entry(marker.wrapper, marker.doc or _listed(marker)))
-        elif isinstance(marker, Items):
-            found.append(Entry(marker.tag, marker.doc or _doc(marker.cls)))
-        elif isinstance(marker, Variants):
-            found += [Entry(tag, _doc(cls)) for tag, cls in marker.classes.items()]
-        elif isinstance(marker, Settings):
-            set_ = registry.of(cls, marker.type)
-            found += [
-                Entry(a.name, a.doc, attribute=a) for a in set_ if not a.readonly and a.type.in_file
-            ]
-    return found
+    if isinstance(place, Listing):
+        return _items(place.part)
+
+    def of_children(part: ChildField) -> list[Entry]:
+        return [Entry(part.wrapper, part.doc or _listed(part))] if part.wrapper else _items(part)
+
+    def of_settings(part: SettingsField) -> list[Entry]:
+        return [Entry(a.name, a.doc, attribute=a) for a in _writable(part, registry)]
+
+    listed = schema_of(place.cls).each_content(of_children, of_settings)
+    return [entry for entries in listed for entry in entries]
 
 
-def _listed(marker: Items | Variants) -> str:
-    tags = [marker.tag] if isinstance(marker, Items) else list(marker.classes)
-    return f"A list of {', '.join(f'`{tag}`' for tag in tags)}."
+def _items(part: ChildField) -> list[Entry]:
+    """List the elements of a child field, wrapper aside."""
+    if part.mixed:
+        return [Entry(tag, schema_of(cls).doc) for tag, cls in part.classes.items()]
+    return [Entry(part.tag, part.doc or schema_of(part.cls).doc)]
+
+
+def _listed(part: ChildField) -> str:
+    return f"A list of {', '.join(f'`{tag}`' for tag in part.classes)}."
+
+
+def _writable(part: SettingsField, registry: Registry) -> list[Attribute]:
+    return [a for a in part.known(registry) if not a.readonly and a.type.in_file]
 
 
 def attributes(place: Place, registry: Registry) -> list[Entry]:
-    """The attributes that an element at a place takes."""
+    """List the attributes that an element at a place takes."""
     if isinstance(place, Listing):
         return []
     if isinstance(place, Leaf):
@@ -183,17 +160,10 @@ def attributes(place: Place, registry: Registry) -> list[Entry]:
         keys = keys_of(attribute)
         one = _attr_of(attribute) if len(keys) == 1 else Attr(DataType.FLOAT, constant=True)
         return [Entry(key, attribute.doc, True, one, attribute) for key in keys]
-    found: list[Entry] = []
-    for name, marker in place.cls.markers().items():
-        if isinstance(marker, Attr):
-            found.append(Entry(file_key(name, marker), marker.doc, marker.required, marker))
-        elif isinstance(marker, Inline):
-            found += [
-                Entry(a.name, a.doc, attr=_attr_of(a), attribute=a)
-                for a in registry.of(place.cls, marker.type)
-                if not a.readonly and a.type.in_file
-            ]
-    return found
+    schema = schema_of(place.cls)
+    own = [Entry(a.name, a.doc, a.required, a) for a in schema.attributes]
+    inline = [a for part in schema.inline for a in _writable(part, registry)]
+    return own + [Entry(a.name, a.doc, attr=_attr_of(a), attribute=a) for a in inline]
 
 
 def _attr_of(attribute: Attribute) -> Attr:

@@ -15,7 +15,7 @@ from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
 from nau_py.model.maps import InjectionMap, MaterialMap
 from nau_py.model.material import ValueOf
-from nau_py.model.node import Attr, Inline, Node, Settings, file_key
+from nau_py.model.node import Node
 from nau_py.model.raytrace import RayMaterial, RaytracePass, RayVariable
 from nau_py.model.references import (
     CONTEXTS,
@@ -23,6 +23,7 @@ from nau_py.model.references import (
     owned_nodes,
     qualified_reference,
 )
+from nau_py.model.schema import AttributeField, SettingsField, schema_of
 from nau_py.syntax.edit import Document, change_edits
 
 Span = tuple[str, int, int]
@@ -136,50 +137,48 @@ def _references(project: Project) -> Iterator[Symbol]:
     buffers = set(known_names(project, "buffer"))
     scenes = {scene.name for scene in project.assets.scenes}
     for node, library in owned_nodes(project):
-        for field, marker in node.markers().items():
-            if isinstance(marker, Attr):
-                for symbol in _attribute(node, field, marker, library, buffers):
-                    if symbol.kind == "scene" and symbol.name not in scenes:
-                        symbol = replace(symbol, kind="camera")  # cameras are scenes too
-                    yield symbol
-            elif isinstance(marker, Settings | Inline):
-                yield from _settings(project, node, field, marker)
+        schema = schema_of(type(node))
+        for attribute in schema.attributes:
+            for symbol in _attribute(node, attribute, library, buffers):
+                if symbol.kind == "scene" and symbol.name not in scenes:
+                    symbol = replace(symbol, kind="camera")  # cameras are scenes too
+                yield symbol
+        for part in [*schema.settings, *schema.inline]:
+            yield from _settings(project, node, part)
         yield from _special(node)
 
 
 def _attribute(
-    node: Node, field: str, marker: Attr, library: str, buffers: set[str]
+    node: Node, attribute: AttributeField, library: str, buffers: set[str]
 ) -> Iterator[Symbol]:
-    value = getattr(node, field)
+    value = attribute.of(node)
     if not isinstance(value, str) or not value:
         return
-    where = node.where(file_key(field, marker))
-    if marker.constant:
+    where = node.where(attribute.name)
+    if attribute.constant:
         yield Symbol("constant", value, value, where)
-    if not marker.ref or marker.ref == "object type":
+    if not attribute.ref or attribute.ref == "object type":
         return
-    name = qualified_reference(node, marker, library, value, buffers)
+    name = qualified_reference(node, attribute, library, value, buffers)
     head, _, tail = value.rpartition("::")
-    yield Symbol(marker.ref, name, tail, where)
+    yield Symbol(attribute.ref, name, tail, where)
     if head:
         yield Symbol("library", head, head, where)
 
 
-def _settings(
-    project: Project, node: Node, field: str, marker: Settings | Inline
-) -> Iterator[Symbol]:
-    for tag, setting in getattr(node, field).items():
-        attribute = project.registry.of(type(node), marker.type).get(tag)
-        if isinstance(marker, Settings):
-            kind = f"attribute of {marker.type}"
+def _settings(project: Project, node: Node, part: SettingsField) -> Iterator[Symbol]:
+    for tag, setting in part.of(node).items():
+        attribute = part.known(project.registry).get(tag)
+        if part.as_tags:
+            kind = f"attribute of {part.type}"
             yield Symbol(kind, tag, tag, setting.location, Part.ELEMENT)
-        for part in setting.parts if attribute is not None else ():
-            if not isinstance(part, str) or attribute is None:
+        for value in setting.parts if attribute is not None else ():
+            if not isinstance(value, str) or attribute is None:
                 continue
             if attribute.reference:
-                yield Symbol(attribute.reference, part, part, setting.location)
+                yield Symbol(attribute.reference, value, value, setting.location)
             elif attribute.type.is_number:
-                yield Symbol("constant", part, part, setting.location)
+                yield Symbol("constant", value, value, setting.location)
 
 
 def _special(node: Node) -> Iterator[Symbol]:

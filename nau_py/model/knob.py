@@ -14,6 +14,7 @@ from nau_py.model.mask import MaskPass
 from nau_py.model.node import Node, Setting
 from nau_py.model.passes import Pass
 from nau_py.model.raytrace import RaytracePass
+from nau_py.model.schema import schema_of
 
 Value = float | int | str
 
@@ -169,6 +170,6 @@ def _selectors(pass_: Pass, tag: str, attribute: str) -> list[Node]:
 
 def _numbers(pass_: Pass) -> Iterator[str]:
     for node in _chosen(pass_):
-        for name in node.markers():
-            if isinstance(getattr(node, name), int | float):
-                yield f"{node.tag}/{name}"
+        for attribute in schema_of(type(node)).attributes:
+            if isinstance(attribute.of(node), int | float):
+                yield f"{node.tag}/{attribute.name}"

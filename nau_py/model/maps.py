@@ -6,8 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from nau_py.model.node import Attr, Child, Configured, Items, Node, Settings
-from nau_py.model.scene import NodeSettings
+from nau_py.model.node import Attr, Child, Configured, Items, Node, NodeSettings, Settings
 from nau_py.model.values import DataType
 
 

@@ -1,15 +1,20 @@
-"""The base of every model, and the markers that say how a field stands in a file.
+"""The base of every noun of a project, and the markers that declare its fields.
 
-A field is declared as ``Annotated[type, marker]``. The markers are read by one binder (file to
-model), one writer (model to file), the linter and the generated reference, so that a noun is
-described once.
+A field is declared as ``Annotated[type, marker]``. :mod:`nau_py.model.schema` derives one
+description of a class from its markers; reading, writing, lint, completion and the reference page
+use that description.
+
+pydantic holds the fields: types, defaults, and the markers as metadata. Its validation is not
+used. It stops at the first model that it cannot build and knows no positions, whereas a wrong file
+must still load, so that lint can report all of its faults, each with file, line and column.
+:class:`nau_py.formats.bind.Binder` therefore converts values by the description, collects the
+problems and builds nodes with ``model_construct``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -26,15 +31,16 @@ class Attr:
     doc: str = ""
     required: bool = False
     name: str = ""
+    """The name in a file; empty for the name of the field."""
     values: tuple[str, ...] = ()
     constant: bool = False
-    """Whether the name of a project constant may stand for the number."""
+    """True if the name of a project constant may replace the number."""
     ref: str = ""
-    """What the value names: ``scene``, ``camera``, ``material`` …; checked by lint."""
+    """Kind of the thing that the value names: ``scene``, ``camera``, ``material`` …"""
     library: str = ""
-    """The attribute that holds the library of ``ref``."""
+    """The field that holds the library of ``ref``."""
     file: str = ""
-    """The value is a path to a file of this kind: ``model``, ``shader``, ``texture`` …"""
+    """Kind of the file whose path the value is: ``model``, ``shader``, ``texture`` …"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,18 +49,35 @@ class Child:
 
     cls: type[Node]
     tag: str = ""
+    """The tag in a file; empty for the name of the field."""
     doc: str = ""
 
 
 @dataclass(frozen=True, slots=True)
+class Choice:
+    """Choice of a node's class by the value of one attribute of its element."""
+
+    attribute: str
+    default: str
+    """The value of an element without the attribute."""
+    classes: Mapping[str, type[Node]]
+    other: type[Node]
+    """The class for every other value."""
+
+    def pick(self, attributes: Mapping[str, str]) -> type[Node]:
+        """Return the class of an element with these attributes."""
+        return self.classes.get(attributes.get(self.attribute, self.default), self.other)
+
+
+@dataclass(frozen=True, slots=True)
 class Items:
-    """Repeated child elements ``tag``, inside ``wrapper`` where one is named."""
+    """Repeated child elements ``tag``, inside ``wrapper`` if one is named."""
 
     cls: type[Node]
     tag: str
     wrapper: str = ""
     doc: str = ""
-    choose: Callable[[Element], type[Node]] | None = None
+    choice: Choice | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,12 +120,16 @@ class Setting:
     extra: dict[str, str] = field(default_factory=dict)
 
 
-class Node(BaseModel):
-    """A thing that a file says. Equality ignores positions.
+NodeSettings = dict[str, Setting]
+"""Settings by the name of the attribute."""
 
-    ``unknown_attributes`` and ``unknown_children`` hold what the model has no place for, so that
-    nothing is lost and lint can report it. A child element in ``partial`` is a known wrapper of
-    which only the left-over parts are kept.
+
+class Node(BaseModel):
+    """One element of a file with its values and child nodes. Equality ignores positions.
+
+    ``unknown_attributes`` and ``unknown_children`` hold everything that the class does not
+    declare, so that nothing is lost and lint can report it. ``partial`` holds the wrappers of
+    lists that have something besides their items; of each it keeps only that rest.
     """
 
     model_config = ConfigDict(extra="forbid", arbitrary_types_allowed=True, defer_build=True)
@@ -121,53 +148,54 @@ class Node(BaseModel):
         names = set(type(self).model_fields) - skip
         return all(getattr(self, name) == getattr(other, name) for name in names)
 
-    @classmethod
-    def markers(cls) -> dict[str, Marker]:
-        """Field name to marker, in declaration order."""
-        found = _MARKERS.get(cls)
-        if found is None:
-            found = {
-                name: marker
-                for name, info in cls.model_fields.items()
-                for marker in info.metadata
-                if isinstance(marker, Marker)
-            }
-            _MARKERS[cls] = found
-        return found
-
     def where(self, attribute: str = "") -> Location:
-        """The position of an attribute's value, or of the element where it has none."""
+        """Return the position of an attribute's value, or of the element if it has none."""
         return self.attribute_locations.get(attribute, self.location)
 
     def children(self) -> Iterator[Node]:
-        """Direct child nodes in declaration order."""
-        for name, marker in self.markers().items():
+        """Yield the direct child nodes in the order of declaration."""
+        for name in _child_fields(type(self)):
             value = getattr(self, name)
-            if isinstance(marker, Child) and value is not None:
-                yield value
-            elif isinstance(marker, Items | Variants):
+            if isinstance(value, list):
                 yield from value
+            elif value is not None:
+                yield value
 
     def walk(self) -> Iterator[Node]:
+        """Yield this node and all nodes below it, parents first."""
         yield self
         for child in self.children():
             yield from child.walk()
 
 
-_MARKERS: dict[type[Node], dict[str, Marker]] = {}
+def markers(cls: type[Node]) -> dict[str, Marker]:
+    """Map the fields of ``cls`` to their markers, in the order of declaration."""
+    return {
+        name: marker
+        for name, info in cls.model_fields.items()
+        for marker in info.metadata
+        if isinstance(marker, Marker)
+    }
 
 
-def file_key(name: str, marker: Attr) -> str:
-    """The attribute name in a file for the field ``name``."""
-    return marker.name or name
+_CHILD_FIELDS: dict[type[Node], list[str]] = {}
+
+
+def _child_fields(cls: type[Node]) -> list[str]:
+    found = _CHILD_FIELDS.get(cls)
+    if found is None:
+        nodes = Child | Items | Variants
+        found = [name for name, marker in markers(cls).items() if isinstance(marker, nodes)]
+        _CHILD_FIELDS[cls] = found
+    return found
 
 
 class Configured(Node):
     """A node that carries settings of an attribute set."""
 
-    settings: Any = None
+    settings: NodeSettings = Field(default_factory=dict)
 
     def get(self, name: str) -> tuple[Scalar, ...] | None:
-        """The parts that the file gives to attribute ``name``, or None where it is unset."""
+        """Return the parts that the file gives to attribute ``name``, or None if it is unset."""
         setting = self.settings.get(name)
         return None if setting is None else setting.parts

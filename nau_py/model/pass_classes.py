@@ -12,7 +12,6 @@ from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import BUILT_IN, PARAMETERS
 from nau_py.model.node import Attr, Node
 from nau_py.model.passes import Pass
-from nau_py.syntax.element import Element
 
 
 class OtherPass(Pass):
@@ -47,8 +46,3 @@ def declare_pass_class(
     PASS_CLASSES[name] = model
     if parameters:
         PARAMETERS[model] = parameters
-
-
-def pass_model(element: Element) -> type[Pass]:
-    """Return the model of a ``<pass>`` element."""
-    return PASS_CLASSES.get(element.attributes.get("class", "default"), OtherPass)

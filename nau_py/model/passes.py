@@ -8,8 +8,17 @@ from pydantic import Field
 
 from nau_py.model.attributes.passes import RUN_MODES
 from nau_py.model.maps import InjectionMap, MaterialMap
-from nau_py.model.node import Attr, Child, Configured, Inline, Items, Node, Settings, Variants
-from nau_py.model.scene import NodeSettings
+from nau_py.model.node import (
+    Attr,
+    Child,
+    Configured,
+    Inline,
+    Items,
+    Node,
+    NodeSettings,
+    Settings,
+    Variants,
+)
 from nau_py.model.values import DataType
 
 

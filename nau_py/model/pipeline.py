@@ -6,8 +6,8 @@ from typing import Annotated
 
 from pydantic import Field
 
-from nau_py.model.node import Attr, Child, Items, Node
-from nau_py.model.pass_classes import pass_model
+from nau_py.model.node import Attr, Child, Choice, Items, Node
+from nau_py.model.pass_classes import PASS_CLASSES, OtherPass
 from nau_py.model.passes import Pass, Script
 from nau_py.model.values import DataType
 
@@ -24,7 +24,13 @@ class Pipeline(Node):
     postScript: Annotated[Script | None, Child(Script)] = None
     testScript: Annotated[Script | None, Child(Script)] = None
     passes: Annotated[
-        list[Pass], Items(Pass, "pass", doc="Executed in document order.", choose=pass_model)
+        list[Pass],
+        Items(
+            Pass,
+            "pass",
+            doc="Executed in document order.",
+            choice=Choice("class", "default", PASS_CLASSES, OtherPass),
+        ),
     ] = Field(default_factory=list)
 
 

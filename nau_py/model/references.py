@@ -1,4 +1,4 @@
-"""What a reference of a file names, in full: the library that a short name is looked up in."""
+"""Qualified names of references: the library in which a short name is looked up."""
 
 from __future__ import annotations
 
@@ -27,16 +27,19 @@ def owned_nodes(project: Project) -> Iterator[tuple[Node, str]]:
 
 
 def qualified_reference(
-    node: Node, marker: Attr, library: str, value: str, buffers: Container[str] = ()
+    node: Node, attribute: Attr, library: str, value: str, buffers: Container[str] = ()
 ) -> str:
-    """The qualified name (``lib::name``, or the name of a plain kind) that attribute ``marker`` of
-    ``node`` refers to. ``library``: the one that the node stands in. ``buffers``: known buffers,
-    which are looked up in a second library too (docs/format.md, 6.8)."""
-    if marker.ref in PLAIN_KINDS or ("::" in value and marker.ref not in _OWN_LIBRARY):
+    """Qualify the name that an attribute of ``node`` refers to: ``lib::name``, or the plain name
+    for a kind that belongs to no library.
+
+    ``library`` is the library of the node itself. Names in ``buffers`` are looked up in a second
+    library too (docs/format.md, 6.8).
+    """
+    if attribute.ref in PLAIN_KINDS or ("::" in value and attribute.ref not in _OWN_LIBRARY):
         return value
-    given = getattr(node, marker.library) if marker.library else None
+    given = getattr(node, attribute.library) if attribute.library else None
     wanted = f"{given or library or DEFAULT_LIBRARY}::{value}"
-    if marker.ref == "buffer" and wanted not in buffers:
+    if attribute.ref == "buffer" and wanted not in buffers:
         wanted = f"{getattr(node, 'fromLibrary', None) or library}::{value}"
     return wanted
 

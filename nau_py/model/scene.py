@@ -6,7 +6,16 @@ from typing import Annotated
 
 from pydantic import Field
 
-from nau_py.model.node import Attr, Configured, Inline, Items, Node, Setting, Settings, Variants
+from nau_py.model.node import (
+    Attr,
+    Configured,
+    Inline,
+    Items,
+    Node,
+    NodeSettings,
+    Settings,
+    Variants,
+)
 
 SCENE_TYPES = (
     "OctreeUnified",
@@ -29,7 +38,7 @@ TOPOLOGIES = (
     "PATCHES",
 )
 
-NodeSettings = dict[str, Setting]
+
 _INLINE_SIZES = "SLICES, STACKS of a SPHERE; DIVISIONS, LENGTH of a GRID."
 
 

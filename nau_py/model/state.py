@@ -6,8 +6,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from nau_py.model.node import Attr, Configured, Settings
-from nau_py.model.scene import NodeSettings
+from nau_py.model.node import Attr, Configured, NodeSettings, Settings
 
 
 class State(Configured):

@@ -7,8 +7,7 @@ from typing import Annotated
 from pydantic import Field
 
 from nau_py.model.attributes.texture import COLOR_FORMATS, DEPTH_FORMATS
-from nau_py.model.node import Attr, Child, Configured, Node, Settings, Variants
-from nau_py.model.scene import NodeSettings
+from nau_py.model.node import Attr, Child, Configured, Node, NodeSettings, Settings, Variants
 
 
 class ColorAttachment(Node):

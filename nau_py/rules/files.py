@@ -9,7 +9,7 @@ from pathlib import Path
 from nau_py.diagnostics.catalogue import ERROR, NOTE, WARNING, rule
 from nau_py.diagnostics.diagnostic import Change, Diagnostic, Fix, Part, listing
 from nau_py.diagnostics.location import Location
-from nau_py.model.node import Attr, file_key
+from nau_py.model.schema import schema_of
 from nau_py.model.walk import nodes
 from nau_py.process.paths import resolve, similar
 from nau_py.rules.registry import LintContext, check
@@ -53,13 +53,12 @@ _SOFT = {"texture": F004}
 def files(context: LintContext) -> Iterator[Diagnostic]:
     """Every attribute that is a path, but those of ray programs (T)."""
     for node in nodes(context.project):
-        for name, marker in node.markers().items():
-            if not isinstance(marker, Attr) or not marker.file or marker.file == "program":
+        for attribute in schema_of(type(node)).attributes:
+            value = attribute.of(node)
+            if attribute.file in ("", "program") or not isinstance(value, str):
                 continue
-            value = getattr(node, name)
-            if isinstance(value, str):
-                key = file_key(name, marker)
-                yield from _path(value, marker.file, node.where(key), f"'{key}' of <{node.tag}>")
+            key = attribute.name
+            yield from _path(value, attribute.file, node.where(key), f"'{key}' of <{node.tag}>")
 
 
 def _path(text: str, kind: str, where: Location, what: str) -> Iterator[Diagnostic]:

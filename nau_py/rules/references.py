@@ -12,7 +12,7 @@ from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
 from nau_py.model.maps import matches
 from nau_py.model.material import ValueOf
-from nau_py.model.node import Attr, Node, Settings, file_key
+from nau_py.model.node import Node
 from nau_py.model.passes import Pass, TargetReference
 from nau_py.model.raytrace import RayVariable
 from nau_py.model.references import (
@@ -23,6 +23,7 @@ from nau_py.model.references import (
     pass_libraries,
     qualified_reference,
 )
+from nau_py.model.schema import AttributeField, schema_of
 from nau_py.model.walk import nodes
 from nau_py.rules.registry import LintContext, check
 
@@ -113,22 +114,22 @@ def references(context: LintContext) -> Iterator[Diagnostic]:
     """Every attribute that names something."""
     names = _Names(context.project)
     for node, library in owned_nodes(context.project):
-        for name, marker in node.markers().items():
-            if isinstance(marker, Attr) and marker.ref:
-                value = getattr(node, name)
-                if value is not None:
-                    yield from _attribute(context, names, node, library, name, marker, value)
-            elif isinstance(marker, Settings):
-                for tag, setting in getattr(node, name).items():
-                    attribute = context.project.registry.of(type(node), marker.type).get(tag)
-                    if attribute is not None and attribute.reference:
-                        yield from _name(
-                            names,
-                            attribute.reference,
-                            str(setting.parts[0]),
-                            setting.location,
-                            f"<{tag}> of <{node.tag}>",
-                        )
+        schema = schema_of(type(node))
+        for attribute in schema.attributes:
+            value = attribute.of(node)
+            if attribute.ref and isinstance(value, str):
+                yield from _attribute(context, names, node, library, attribute, value)
+        for part in schema.settings:
+            for tag, setting in part.of(node).items():
+                found = part.known(context.project.registry).get(tag)
+                if found is not None and found.reference:
+                    yield from _name(
+                        names,
+                        found.reference,
+                        str(setting.parts[0]),
+                        setting.location,
+                        f"<{tag}> of <{node.tag}>",
+                    )
 
 
 def _name(names: _Names, kind: str, value: str, where: Location, what: str) -> Iterator[Diagnostic]:
@@ -147,21 +148,20 @@ def _attribute(
     names: _Names,
     node: Node,
     library: str,
-    name: str,
-    marker: Attr,
+    attribute: AttributeField,
     value: str,
 ) -> Iterator[Diagnostic]:
-    key = file_key(name, marker)
+    key = attribute.name
     where, what = node.where(key), f"attribute '{key}' of <{node.tag}>"
-    kind = marker.ref
+    kind = attribute.ref
     if kind in PLAIN_KINDS:
         yield from _name(names, kind, value, where, what)
         return
-    given = getattr(node, marker.library) if marker.library else None
+    given = getattr(node, attribute.library) if attribute.library else None
     if "::" not in value and given is not None and given not in names.of("library"):
         return  # the library is what is undefined
     buffers = names.of("buffer") if kind == "buffer" else ()
-    wanted = qualified_reference(node, marker, library, value, buffers)
+    wanted = qualified_reference(node, attribute, library, value, buffers)
     if kind == "material" and wanted.split("::")[0] in pass_libraries(context.project):
         return
     known = names.of(kind)

@@ -18,21 +18,12 @@ from nau_py.diagnostics.diagnostic import (
 from nau_py.diagnostics.location import Location
 from nau_py.model.attribute import Attribute
 from nau_py.model.linked import Project
-from nau_py.model.node import (
-    Attr,
-    Child,
-    Inline,
-    Items,
-    Node,
-    Setting,
-    Settings,
-    Variants,
-    file_key,
-)
+from nau_py.model.node import Node, Setting
 from nau_py.model.passes import Pass
 from nau_py.model.physics import PhysicsMaterial
 from nau_py.model.raytrace import VERTEX_ATTRIBUTES
 from nau_py.model.scene import BufferGeometry
+from nau_py.model.schema import schema_of
 from nau_py.model.texture import Texture
 from nau_py.model.walk import nodes
 from nau_py.rules.registry import LintContext, check
@@ -140,37 +131,11 @@ _STRUCTURAL = {
 }
 
 
-def known_children(node: Node, project: Project) -> list[str]:
-    """Tags that ``node`` takes."""
-    tags: list[str] = []
-    for name, marker in node.markers().items():
-        if isinstance(marker, Child):
-            tags.append(marker.tag or name)
-        elif isinstance(marker, Items):
-            tags.append(marker.wrapper or marker.tag)
-        elif isinstance(marker, Variants):
-            tags += [marker.wrapper] if marker.wrapper else list(marker.classes)
-        elif isinstance(marker, Settings):
-            tags += project.registry.of(type(node), marker.type).writable
-    return tags
-
-
-def known_attributes(node: Node, project: Project) -> list[str]:
-    """Attributes that ``node`` takes."""
-    found: list[str] = []
-    for name, marker in node.markers().items():
-        if isinstance(marker, Attr):
-            found.append(file_key(name, marker))
-        elif isinstance(marker, Inline):
-            found += project.registry.of(type(node), marker.type).writable
-    return found
-
-
 @check
 def unknown_things(context: LintContext) -> Iterator[Diagnostic]:
     """Attributes and elements that the models have no place for."""
     for node in nodes(context.project):
-        attributes = known_attributes(node, context.project)
+        attributes = schema_of(type(node)).names(context.project.registry)
         for key, value in node.unknown_attributes.items():
             if key in attributes:
                 continue  # its value did not convert: V001 says so
@@ -197,8 +162,9 @@ def _remove(where: Location, key: str, safe: bool) -> tuple[Fix, ...]:
 
 
 def _unknown_child(project: Project, node: Node, tag: str, child: Element) -> Iterator[Diagnostic]:
-    tags = known_children(node, project)
-    if tag in tags or _has_setting(node, tag, project):
+    schema = schema_of(type(node))
+    tags = schema.tags(project.registry)
+    if tag in tags or schema.setting(tag, project.registry) is not None:
         return  # repeated or unreadable: X004, V001, V003 or V004 say so
     if isinstance(node, Pass) and tag in project.registry["PASS"]:
         return  # a parameter of another pass class: P007
@@ -221,22 +187,10 @@ def _unknown_child(project: Project, node: Node, tag: str, child: Element) -> It
     yield S001.at(child.location, message, fixes=fixes)
 
 
-def _has_setting(node: Node, tag: str, project: Project) -> bool:
-    return any(
-        isinstance(marker, Settings) and tag in project.registry.of(type(node), marker.type)
-        for marker in node.markers().values()
-    )
-
-
 def _left_over(
     project: Project, node: Node, wrapper: str, element: Element
 ) -> Iterator[Diagnostic]:
-    inside = [
-        tag
-        for marker in node.markers().values()
-        if isinstance(marker, Items | Variants) and marker.wrapper == wrapper
-        for tag in ([marker.tag] if isinstance(marker, Items) else marker.classes)
-    ]
+    inside = list(schema_of(type(node)).by_tag[wrapper].classes)
     name = element.source_tag
     for key, value in element.attributes.items():
         message = f"attribute '{key}' (='{value}') of <{name}> is unknown and ignored"
@@ -253,22 +207,20 @@ def _left_over(
 def attribute_values(context: LintContext) -> Iterator[Diagnostic]:
     """Required attributes, and values of enumerated ones."""
     for node in nodes(context.project):
-        for name, marker in node.markers().items():
-            if not isinstance(marker, Attr):
-                continue
-            key, value = file_key(name, marker), getattr(node, name)
+        for attribute in schema_of(type(node)).attributes:
+            key, value = attribute.name, attribute.of(node)
             if value is None:
-                if marker.required and key not in node.unknown_attributes:
+                if attribute.required and key not in node.unknown_attributes:
                     yield S004.at(node.location, f"<{node.tag}> needs the attribute '{key}'")
-            elif marker.values and value not in marker.values:
-                known = list(marker.values)
+            elif attribute.values and value not in attribute.values:
+                known = list(attribute.values)
                 yield V005.at(
                     node.where(key),
                     f"attribute '{key}' of <{node.tag}> is '{value}'; it takes "
                     f"{listing(known, 20)}{nearest(str(value), known)}",
                     fixes=guess(node.where(key), str(value), known),
                 )
-            elif isinstance(value, str) and marker.constant:
+            elif isinstance(value, str) and attribute.constant:
                 yield from _constant(
                     context.project, value, f"'{key}' of <{node.tag}>", node.where(key)
                 )
@@ -289,12 +241,12 @@ def _constant(project: Project, name: str, what: str, where: Location) -> Iterat
 def settings(context: LintContext) -> Iterator[Diagnostic]:
     """Enums, ranges and constants of child tags and inline attributes."""
     for node in nodes(context.project):
-        for name, marker in node.markers().items():
-            if isinstance(marker, Settings | Inline):
-                for tag, setting in getattr(node, name).items():
-                    attribute = context.project.registry.of(type(node), marker.type).get(tag)
-                    if attribute is not None:
-                        yield from _setting(context.project, node, tag, setting, attribute)
+        schema = schema_of(type(node))
+        for part in [*schema.settings, *schema.inline]:
+            for tag, setting in part.of(node).items():
+                attribute = part.known(context.project.registry).get(tag)
+                if attribute is not None:
+                    yield from _setting(context.project, node, tag, setting, attribute)
 
 
 def _setting(

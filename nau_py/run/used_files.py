@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from nau_py.model.linked import Project
-from nau_py.model.node import Attr, Node, file_key
+from nau_py.model.node import Node
+from nau_py.model.schema import schema_of
 from nau_py.model.walk import nodes
 from nau_py.process.paths import resolve
 from nau_py.raytrace.programs.source import stand_in
@@ -41,17 +42,17 @@ def used_files(project: Project) -> dict[Path, str]:
 
 def _named(project: Project, node: Node) -> Iterator[tuple[str, Path]]:
     """Yield (kind, path) of the files that a node names."""
-    for name, marker in node.markers().items():
-        value = getattr(node, name)
-        if not isinstance(marker, Attr) or not marker.file or not isinstance(value, str):
+    for attribute in schema_of(type(node)).attributes:
+        value = attribute.of(node)
+        if not attribute.file or not isinstance(value, str):
             continue
-        if marker.file == PROGRAM:
+        if attribute.file == PROGRAM:
             path = stand_in(project.folder, value)
             if path is not None:
                 yield PROGRAM, path
             continue
-        folder = Path(node.where(file_key(name, marker)).file or ".").parent
-        yield marker.file, resolve(folder, value).best
+        folder = Path(node.where(attribute.name).file or ".").parent
+        yield attribute.file, resolve(folder, value).best
 
 
 def _related(path: Path, kind: str) -> Iterator[Path]:

@@ -10,9 +10,10 @@ from typing import Any
 from nau_py.model.attribute import Attribute
 from nau_py.model.linked import Project
 from nau_py.model.mask import MaskPass
-from nau_py.model.node import Attr, Configured, Node
+from nau_py.model.node import Configured, Node
 from nau_py.model.pipeline import Pipeline
 from nau_py.model.raytrace import RaytracePass
+from nau_py.model.schema import schema_of
 from nau_py.model.values import Scalar
 from nau_py.run.parameters import parameters
 
@@ -195,13 +196,13 @@ def selectors(pass_: MaskPass) -> list[Node]:
 
 def _selectors(pass_: MaskPass, group: str) -> Iterator[Control]:
     for index, node in enumerate(selectors(pass_)):
-        for name, marker in node.markers().items():
-            value = getattr(node, name)
-            if isinstance(marker, Attr) and isinstance(value, int | float):
-                kind = "whole" if marker.type.is_integer else "number"
+        for attribute in schema_of(type(node)).attributes:
+            value, name = attribute.of(node), attribute.name
+            if isinstance(value, int | float):
+                kind = "whole" if attribute.type.is_integer else "number"
                 key = key_of("MASK", f"{pass_.name}#{index}", name)
                 label = f"{name} ({node.tag} {index + 1})"
-                yield Control(key, group, label, kind, (value,), doc=marker.doc)
+                yield Control(key, group, label, kind, (value,), doc=attribute.doc)
 
 
 def _interface(project: Project) -> Iterator[Control]:

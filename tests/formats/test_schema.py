@@ -13,9 +13,10 @@ import pytest
 from lxml import etree
 from ruamel.yaml import YAML
 
+from nau_py.formats.json_schema import json_schema
 from nau_py.formats.load import is_library, load_library, load_project
-from nau_py.formats.schema import json_schema, xsd
 from nau_py.formats.write import format_node
+from nau_py.formats.xsd import xsd
 from nau_py.model.attributes import Registry
 from nau_py.model.pass_classes import PASS_CLASSES
 from tests.conftest import PROJECTS, ROOT, Folder
