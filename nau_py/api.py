@@ -22,6 +22,16 @@ def load(path: str | Path) -> Project:
     return load_project(path)
 
 
+def _project_html(project: Project) -> str:
+    from nau_py.reporting.notebook import project_html
+
+    return project_html(project)
+
+
+# Notebooks call this method. The model itself makes no HTML.
+Project._repr_html_ = _project_html  # type: ignore[attr-defined]
+
+
 def lint(project: Project, models: bool = False) -> list[Diagnostic]:
     """Return every finding about ``project``, in file and line order. Executes nothing of it.
 

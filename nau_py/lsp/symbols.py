@@ -10,7 +10,7 @@ from pathlib import Path
 from nau_py.diagnostics.diagnostic import Change, Part
 from nau_py.diagnostics.location import Location
 from nau_py.formats.load import YAML_SUFFIXES
-from nau_py.model.interface import Variable
+from nau_py.model.interface import InterfaceVariable
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
 from nau_py.model.maps import InjectionMap, MaterialMap
@@ -183,7 +183,7 @@ def _settings(project: Project, node: Node, part: SettingsField) -> Iterator[Sym
 
 def _special(node: Node) -> Iterator[Symbol]:
     """Names whose kind another attribute says, or that models define too."""
-    if isinstance(node, ValueOf | RayVariable | Variable) and node.type:
+    if isinstance(node, ValueOf | RayVariable | InterfaceVariable) and node.type:
         kind = CONTEXTS.get(node.type)
         if kind and node.context and node.context != "CURRENT":
             yield Symbol(kind, node.context, node.context, node.where("context"))

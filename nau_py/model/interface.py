@@ -27,7 +27,7 @@ class PipelineList(Node):
     scriptFile: Annotated[str | None, Attr(doc="Lua file.", file="script")] = None
 
 
-class Variable(Node):
+class InterfaceVariable(Node):
     """A value that the user can change."""
 
     label: Annotated[str | None, Attr(doc="Label.", required=True)] = None
@@ -49,7 +49,9 @@ class Window(Node):
     lists: Annotated[list[PipelineList], Items(PipelineList, "pipelineList")] = Field(
         default_factory=list
     )
-    variables: Annotated[list[Variable], Items(Variable, "var")] = Field(default_factory=list)
+    variables: Annotated[list[InterfaceVariable], Items(InterfaceVariable, "var")] = Field(
+        default_factory=list
+    )
 
 
 class Interface(Node):

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import nau_py.reporting.html as html
 from nau_py.diagnostics.problem import Problem
 from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import Registry
@@ -68,20 +67,6 @@ class Project:
         if width is None or height is None:
             return DEFAULT_SIZE
         return (width, height) if width > 0 and height > 0 else (512, 512)
-
-    def _repr_html_(self) -> str:
-        """Pipelines and passes, for notebooks."""
-        rows = []
-        for pipeline in self.pipelines:
-            mark = " (default)" if pipeline is self.default_pipeline else ""
-            for number, pass_ in enumerate(pipeline.passes):
-                first = f"{pipeline.name}{mark}" if number == 0 else ""
-                owner = self.target_of(pass_)
-                target = f"{owner[0]}::{owner[1].name}" if owner else "window"
-                rows.append((first, pass_.name or "", pass_.pass_class, target))
-        width, height = self.size
-        about = html.tag("p", f"{self.name}: {width} x {height} pixels, {self.path}")
-        return f"<div>{about}{html.table(('pipeline', 'pass', 'class', 'draws into'), rows)}</div>"
 
     @property
     def default_pipeline(self) -> Pipeline | None:

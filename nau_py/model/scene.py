@@ -42,7 +42,7 @@ TOPOLOGIES = (
 _INLINE_SIZES = "SLICES, STACKS of a SPHERE; DIVISIONS, LENGTH of a GRID."
 
 
-class Geometry(Configured):
+class Primitive(Configured):
     """A built-in primitive (docs/format.md, 10.7)."""
 
     name: Annotated[str | None, Attr(doc="Object and mesh name.", required=True)] = None
@@ -126,7 +126,7 @@ class Scene(Configured):
     ] = None
     param: Annotated[str | None, Attr(doc="Flags: UNITIZE, SWAP_YZ, USE_ADJACENCY.")] = None
     physicsMaterial: Annotated[str | None, Attr(doc="Physics only: ignored.")] = None
-    geometry: Annotated[list[Geometry], Items(Geometry, "geometry")] = Field(default_factory=list)
+    geometry: Annotated[list[Primitive], Items(Primitive, "geometry")] = Field(default_factory=list)
     terrain: Annotated[list[Terrain], Items(Terrain, "terrain")] = Field(default_factory=list)
     buffers: Annotated[list[BufferGeometry], Items(BufferGeometry, "buffers")] = Field(
         default_factory=list

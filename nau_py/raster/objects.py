@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from nau_py.model.buffer import Buffer
 from nau_py.model.node import Configured
-from nau_py.model.scene import Geometry
+from nau_py.model.scene import Primitive
 from nau_py.model.texture import ArrayOfTextures
 from nau_py.model.values import Scalar
 from nau_py.raster.buffers import record_size
@@ -136,7 +136,7 @@ def _object(
     scene, _, wanted = name.partition("::")
     for node in context.world.project.assets.scenes:
         for item in node.geometry if node.name == scene else []:
-            if isinstance(item, Geometry) and item.name == wanted:
+            if isinstance(item, Primitive) and item.name == wanted:
                 return _of_node(context, type_, component, item)
     return None
 

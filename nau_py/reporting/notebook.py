@@ -1,4 +1,4 @@
-"""Frames as notebooks show them."""
+"""Projects and frames as HTML, for notebooks."""
 
 from __future__ import annotations
 
@@ -8,7 +8,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 import nau_py.reporting.html as html
+from nau_py.model.linked import Project
 from nau_py.reporting.output import png
+
+
+def project_html(project: Project) -> str:
+    """Write the pipelines and passes of a project as a table."""
+    rows = []
+    for pipeline in project.pipelines:
+        mark = " (default)" if pipeline is project.default_pipeline else ""
+        for number, pass_ in enumerate(pipeline.passes):
+            first = f"{pipeline.name}{mark}" if number == 0 else ""
+            owner = project.target_of(pass_)
+            target = f"{owner[0]}::{owner[1].name}" if owner else "window"
+            rows.append((first, pass_.name or "", pass_.pass_class, target))
+    width, height = project.size
+    about = html.tag("p", f"{project.name}: {width} x {height} pixels, {project.path}")
+    return f"<div>{about}{html.table(('pipeline', 'pass', 'class', 'draws into'), rows)}</div>"
 
 
 def frame_html(image: NDArray[np.generic], report: dict[str, Any]) -> str:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from nau_py.diagnostics.diagnostic import error, listing, nearest
 from nau_py.diagnostics.errors import ProjectError
 from nau_py.model.attribute import Attribute
-from nau_py.model.interface import Variable
+from nau_py.model.interface import InterfaceVariable
 from nau_py.model.linked import Project
 
 
@@ -17,14 +17,14 @@ class Parameter:
     repeat."""
 
     name: str
-    node: Variable
+    node: InterfaceVariable
     attribute: Attribute
 
 
 def parameters(project: Project) -> list[Parameter]:
     """Return the variables whose attribute takes numbers, in file order."""
     interface = project.file.interface
-    found: list[tuple[str, str, Variable, Attribute]] = []
+    found: list[tuple[str, str, InterfaceVariable, Attribute]] = []
     for window in interface.windows if interface else []:
         for node in window.variables:
             set_ = project.registry.get(node.type or "")

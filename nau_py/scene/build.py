@@ -11,7 +11,7 @@ from nau_py.diagnostics.diagnostic import error as error_at
 from nau_py.diagnostics.location import Location
 from nau_py.model.library import qualified
 from nau_py.model.linked import Project
-from nau_py.model.scene import BufferGeometry, Geometry, Scene, Terrain
+from nau_py.model.scene import BufferGeometry, Primitive, Scene, Terrain
 from nau_py.plugins import READERS, load_plugins
 from nau_py.process.paths import resolve
 from nau_py.scene import primitives
@@ -92,7 +92,7 @@ class SceneBuilder:
             objects += self._folder(folder.name or "", folder.where("name"), swap)
         return objects
 
-    def _geometry(self, node: Geometry) -> list[SceneObject]:
+    def _geometry(self, node: Primitive) -> list[SceneObject]:
         name = node.name or ""
         mesh = self._primitives.get(name)
         if mesh is None:
@@ -103,7 +103,7 @@ class SceneBuilder:
             self.new_materials += [g.material for g in mesh.groups]
         return [SceneObject(name, mesh, transform_of(self.project, node, "SCENE_OBJECT"))]
 
-    def _primitive(self, node: Geometry) -> Mesh | None:
+    def _primitive(self, node: Primitive) -> Mesh | None:
         def size(name: str, set_: str, default: float) -> float:
             setting = (node.sphere if set_ == "SPHERE" else node.grid).get(name)
             return self.project.number(setting.parts[0]) if setting else default
