@@ -18,7 +18,7 @@ import numpy as np
 
 import nau_py
 from nau_py.raytrace.tracing.accelerator import Accelerator
-from nau_py.raytrace.tracing.geometry import gather
+from nau_py.raytrace.tracing.geometry import gather_triangles
 
 TILE = 65536
 SELECTIVE = Path(__file__).parent.parent / "projects" / "selective"
@@ -67,7 +67,7 @@ def main() -> None:
         rates.append(sum(trace["rays"].values()) / trace["stages"]["trace"] * 1000)
     pass_ = renderer.pipeline.passes[0]
     world = renderer.session.world
-    geometry = gather(world.objects(pass_.scene_names), frozenset())
+    geometry = gather_triangles(world.objects(pass_.scene_names), frozenset())
     accelerator = Accelerator(geometry)
     camera = world.camera(pass_.camera_name)
     height, width = frame.image.shape[:2]

@@ -34,10 +34,12 @@ from nau_py.raytrace.kernels.core import codes
 from nau_py.raytrace.programs.batch import PINHOLE
 from nau_py.raytrace.programs.description import CLOSEST_HIT, MISS
 from nau_py.raytrace.tracing.accelerator import Accelerator, embree_version
-from nau_py.raytrace.tracing.batches import RayLight, RayMaterial
-from nau_py.raytrace.tracing.camera_rays import camera_rays, camera_record
-from nau_py.raytrace.tracing.dispatch import LaunchResult, LaunchSettings, Work, run_launch
-from nau_py.raytrace.tracing.geometry import RayGeometry, gather
+from nau_py.raytrace.tracing.camera_rays import encode_camera, make_camera_rays
+from nau_py.raytrace.tracing.dispatch import run_launch
+from nau_py.raytrace.tracing.estimate import LaunchResult
+from nau_py.raytrace.tracing.geometry import RayGeometry, gather_triangles
+from nau_py.raytrace.tracing.launch import LaunchSettings, RayGeneration, RayLaunch
+from nau_py.raytrace.tracing.materials import TracedLight, TracedMaterial
 from nau_py.raytrace.tracing.program_loader import BoundProgram
 from nau_py.raytrace.tracing.scene_tables import Scene, TexelStore, TraceSettings
 from nau_py.scene import primitives
@@ -68,7 +70,7 @@ def plaza() -> tuple[RayGeometry, CameraState]:
 
     path = Path(__file__).parent.parent / "projects" / "half" / "project.xml"
     world = World(nau_py.load(path), (512, 512))
-    return gather(world.objects(["Plaza"])), camera_of((3.6, 1.75, 6.5), (1.2, 3.1, -7.5))
+    return gather_triangles(world.objects(["Plaza"])), camera_of((3.6, 1.75, 6.5), (1.2, 3.1, -7.5))
 
 
 def cornell() -> tuple[RayGeometry, CameraState]:
@@ -85,14 +87,14 @@ def cornell() -> tuple[RayGeometry, CameraState]:
         placed(primitives.box("white"), (0.3, 0.6, 0.3), (-0.35, 0.6, -0.3)),
         placed(primitives.box("white"), (0.3, 0.3, 0.3), (0.35, 0.3, 0.35)),
     ]
-    return gather(objects), camera_of((0, 1, 3.2), (0, 0.9, 0))
+    return gather_triangles(objects), camera_of((0, 1, 3.2), (0, 0.9, 0))
 
 
 def mesh_300k() -> tuple[RayGeometry, CameraState]:
     ball = primitives.sphere(548, 274, "white")
     bumps = 1 + 0.03 * np.sin(40 * ball.positions[:, :1]) * np.sin(40 * ball.positions[:, 1:2])
     ball.attributes["position"][:, :3] *= bumps
-    return gather([SceneObject("o", ball)]), camera_of((0, 0.3, 2.4), (0, 0, 0))
+    return gather_triangles([SceneObject("o", ball)]), camera_of((0, 0.3, 2.4), (0, 0, 0))
 
 
 def user_generate(launch: Any) -> Any:
@@ -117,7 +119,9 @@ def user_lit(rays: Any) -> Any:
     return np.ones(4, np.float32)
 
 
-def work(geometry: RayGeometry, camera: CameraState, size: int, threads: int, user: bool) -> Work:
+def work(
+    geometry: RayGeometry, camera: CameraState, size: int, threads: int, user: bool
+) -> RayLaunch:
     from nau_py.model.attributes.light import LIGHT
 
     count = len(geometry.materials)
@@ -129,13 +133,13 @@ def work(geometry: RayGeometry, camera: CameraState, size: int, threads: int, us
     scene = Scene(
         geometry,
         Accelerator(geometry),
-        [RayMaterial(name, {}, {}) for name in geometry.materials],
+        [TracedMaterial(name, {}, {}) for name in geometry.materials],
         {
             ("Radiance", CLOSEST_HIT): [shade] * count,
             ("Radiance", MISS): [miss],
             ("Shadow", MISS): [lit],
         },
-        [RayLight("Sun", values)],
+        [TracedLight("Sun", values)],
         {},
         {},
         ["Radiance", "Shadow"],
@@ -143,27 +147,25 @@ def work(geometry: RayGeometry, camera: CameraState, size: int, threads: int, us
         TexelStore(),
     )
     rect = Rect(0.0, 0.0, float(size), float(size))
-    return Work(
-        scene,
+    generation = RayGeneration(
         bound(user_generate) if user else bound(None, PINHOLE),
-        None,
+        encode_camera(camera, rect, geometry.centre),
+        make_camera_rays(camera, rect, geometry.centre),
         size,
-        camera_record(camera, rect, geometry.centre),
-        camera_rays(camera, rect, geometry.centre),
-        LaunchSettings(1, threads, TILE),
     )
+    return RayLaunch(scene, generation, None, LaunchSettings(1, threads, TILE))
 
 
 class Raw:
     """Embree alone on the rays that ``work`` traces."""
 
-    def __init__(self, job: Work, size: int, threads: int) -> None:
+    def __init__(self, job: RayLaunch, size: int, threads: int) -> None:
         geometry = job.scene.geometry
         self.scene = EmbreeScene(robust=True)
         TriangleMesh(self.scene, geometry.vertices, geometry.triangles)
         self.threads = threads
         y, x = np.mgrid[0:size, 0:size]
-        o, d = job.rays(
+        o, d = job.generation.rays(
             (x.reshape(-1) + 0.5).astype(np.float32), (y.reshape(-1) + 0.5).astype(np.float32)
         )
         self.tiles = [(o[i : i + TILE], d[i : i + TILE]) for i in range(0, len(o), TILE)]
@@ -226,7 +228,7 @@ def main() -> None:
         jobs = [work(geometry, camera, size, threads, user) for user in (False, True)]
         raw = Raw(jobs[0], size, threads)
 
-        def launch(job: Work) -> LaunchResult:
+        def launch(job: RayLaunch) -> LaunchResult:
             return run_launch(job, pixels, lambda done, total: None)
 
         a, b = (launch(job) for job in jobs)

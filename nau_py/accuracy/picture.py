@@ -10,7 +10,7 @@ from PIL import Image
 from nau_py.accuracy.metrics import F64, Mask
 from nau_py.model.knob import traced
 from nau_py.model.pipeline import Pipeline
-from nau_py.model.raytrace import component
+from nau_py.raytrace.selection.mask import read_mask
 
 if TYPE_CHECKING:
     from nau_py.run.frame import Frame
@@ -47,8 +47,7 @@ def mask_of(frame: Frame, pipeline: Pipeline) -> Mask | None:
     """The pixels that the mask of the raytrace pass selects, (h, w), row 0 at the top; None
     without a mask."""
     for pass_ in traced(pipeline.passes):
-        source = pass_.mask
-        values = frame.targets.get(source.texture or "") if source else None
-        if source is not None and values is not None:
-            return np.asarray(values[:, :, component(source.mask, values.shape[2])] > 0)
+        weights = read_mask(pass_, frame.targets)
+        if weights is not None:
+            return np.asarray(weights > 0)
     return None

@@ -142,3 +142,7 @@ class MaskPass(Pass):
     Several selectors are joined by `or`; without a selector every pixel is selected."""
 
     select: Annotated[list[Any], Variants(SELECTORS, "select")] = Field(default_factory=list)
+
+    def all_selectors(self) -> list[Node]:
+        """Return every selector, also those inside others, in file order."""
+        return [node for top in self.select for node in top.walk()]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from nau_py.passes.drawing import begin_drawing, camera_context, draw_objects, r
 from nau_py.passes.frame import FrameContext, View
 from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
-from nau_py.raytrace.selection.weights import Visible, weights
+from nau_py.raytrace.selection.weights import VisibleSurfaces, compute_weights
 from nau_py.scene.transforms import to_unit_cube
 
 if TYPE_CHECKING:
@@ -29,11 +29,6 @@ if TYPE_CHECKING:
 ITEM_MATERIAL = "__item"
 MASK_FORMATS = ["RGBA32F", "RGBA16F"]
 """Texel formats that hold a world position and a weight."""
-
-
-def selectors(pass_: MaskPass) -> list[Any]:
-    """Return every selector of the pass, nested ones included."""
-    return [node for top in pass_.select for node in top.walk()]
 
 
 @register_pass("mask")
@@ -59,7 +54,7 @@ class MaskClass(PassClass):
                 f"'{colors[0].internalFormat or 'RGBA'}'; {listing(MASK_FORMATS)} holds them",
             )
         known = [a.name for a in project.registry["COLOR"]]
-        for node in selectors(pass_):
+        for node in pass_.all_selectors():
             if isinstance(node, PropertySelector) and node.name and node.name not in known:
                 yield error(
                     "P003",
@@ -72,7 +67,7 @@ class MaskClass(PassClass):
     def access(self, project: Project, pass_: Pass) -> Access:
         access = Access()
         if isinstance(pass_, MaskPass):
-            for node in selectors(pass_):
+            for node in pass_.all_selectors():
                 name = None
                 if isinstance(node, TextureSelector):
                     name = node.name
@@ -85,7 +80,6 @@ class MaskClass(PassClass):
         return access
 
     def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
-
         assert isinstance(pass_, MaskPass)
         view = begin_drawing(pass_, frame, frame.world.camera(pass_.camera_name))
         target = view.target
@@ -108,7 +102,7 @@ class MaskClass(PassClass):
         image = target.textures[target.colors[0].name]
         seen = np.asarray(image.read(), np.float32)
         visible = self._visible(pass_, frame, view, seen, [(n, drawn[n]) for n in names])
-        chosen = weights(pass_.select, visible)
+        chosen = compute_weights(pass_.select, visible)
         image.write(np.dstack([seen[..., :3], chosen]))
         run_process(pass_.postProcess, frame)
         selected = int((chosen > 0).sum())
@@ -129,16 +123,16 @@ class MaskClass(PassClass):
         view: View,
         seen: NDArray[np.float32],
         materials: list[tuple[str, RenderMaterial | None]],
-    ) -> Visible:
+    ) -> VisibleSurfaces:
         """Return the input of the selectors. ``seen``: position and item number of each pixel,
         (height, width, 4), row 0 at the bottom."""
-        visible = Visible(
+        visible = VisibleSurfaces(
             seen[..., :3],
             np.rint(seen[..., 3]).astype(np.int32) - 1,
             [(name, dict(m.colours) if m else {}) for name, m in materials],
             view.camera.position,
         )
-        for node in selectors(pass_):
+        for node in pass_.all_selectors():
             name = node.name if isinstance(node, TextureSelector) else None
             if isinstance(node, ShadowBorderSelector):
                 name = node.texture

@@ -5,8 +5,8 @@ from __future__ import annotations
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import RaytracePass
-from nau_py.raytrace.tracing.face_faults import face_faults
-from nau_py.raytrace.tracing.geometry import gather
+from nau_py.raytrace.tracing.face_faults import find_face_faults
+from nau_py.raytrace.tracing.geometry import gather_triangles
 from nau_py.scene.world import World
 
 
@@ -21,5 +21,5 @@ def model_faults(project: Project) -> list[Diagnostic]:
         for pass_ in pipeline.passes:
             if isinstance(pass_, RaytracePass):
                 objects = world.objects(pass_.scene_names)
-                found += face_faults(pass_, objects, gather(objects).dropped)
+                found += find_face_faults(pass_, objects, gather_triangles(objects).dropped)
     return found

@@ -1,12 +1,26 @@
-"""Class ``raytrace`` (``rt``, ``optix``): traces rays for the pixels that its mask selects."""
+"""Class ``raytrace`` (``rt``, ``optix``): traces rays for the pixels that its mask selects.
+
+``execute`` has the steps of a frame, which are functions of ``passes/tracing/steps.py``:
+
+1. select pixels: the texels of the mask with a weight above 0 (``raytrace/selection/``);
+2. generate rays: a launch over the camera rays of these pixels (``raytrace/tracing/launch.py``,
+   ``raytrace/kernels/path/camera.py``);
+3. trace and shade: tiles over threads (``raytrace/tracing/dispatch.py``), each in compiled code
+   that follows packets of paths (``raytrace/kernels/path/packet.py``) through Embree
+   (``raytrace/kernels/intersect/embree.py``) to closest-hit programs
+   (``raytrace/kernels/shading/closest_hit.py``);
+4. estimate: means and errors of the samples (``raytrace/kernels/path/film.py``,
+   ``raytrace/tracing/estimate.py``);
+5. store: the colours in the render target, the clear value in all other pixels.
+
+Passes whose programs are PTX take ``passes/ptx/execute.py`` instead, with the same selection.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.graph.contract import Access
@@ -16,7 +30,7 @@ from nau_py.model.passes import Pass
 from nau_py.model.raytrace import RaytracePass
 from nau_py.model.values import DataType
 from nau_py.passes.access import add_process, buffer, texture
-from nau_py.passes.drawing import begin_view, pass_value, run_process
+from nau_py.passes.drawing import begin_view, run_process
 from nau_py.passes.frame import FrameContext
 from nau_py.passes.ptx.faults import ptx_faults
 from nau_py.passes.registry import PassClass, register_pass
@@ -95,138 +109,40 @@ class RaytraceClass(PassClass):
         return access
 
     def faults(self, project: Project, pass_: Pass) -> Iterable[Diagnostic]:
-        """What of its compiled programs cannot be run. Pure."""
+        """Return the faults of compiled programs that cannot run."""
         if isinstance(pass_, RaytracePass) and launches_ptx(pass_, project.folder):
             return ptx_faults(project, pass_)
         return ()
 
     def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
-        from nau_py.passes.effects import effect_data
-        from nau_py.passes.tracing import (
-            TracingState,
-            force_mask,
-            read_inputs,
-            read_mask,
-            store_colours,
-        )
-        from nau_py.raytrace.tracing.adaptive import run_adaptive
-        from nau_py.raytrace.tracing.camera_rays import camera_rays, camera_record
-        from nau_py.raytrace.tracing.dispatch import LaunchSettings, Work, run_launch, select
-
+        """Select pixels, generate rays, trace and shade them, estimate the pixels, store them."""
         if not isinstance(pass_, RaytracePass) or pass_.rtEntryPoint is None:
             return PassReport()
         if launches_ptx(pass_, frame.project.folder, frame.session.options.programs):
-            from nau_py.passes.ptx.execute import execute_ptx
+            from nau_py.passes.ptx.execute import execute_ptx  # LLVM
 
             return execute_ptx(pass_, frame)
+        from nau_py.passes.tracing import steps  # Embree and numba: linting imports this module
+
         view = begin_view(pass_, frame, frame.world.camera(pass_.camera_name))
-        target = view.target
         run_process(pass_.preProcess, frame)
         stages = Stages()
-        options = frame.session.options
-        if options.mask != "project":
-            force_mask(pass_, frame, float(options.mask == "all"))
-        inputs = read_inputs(pass_, frame)
+        context = steps.make_context(pass_, frame, view)
+        inputs = steps.read_inputs(pass_, frame)
         stages.end("read_back")
-        mask = read_mask(pass_, inputs)
-        width, height = target.width, target.height
-        pixels = select(mask, width, height)
-        if not len(pixels):
-            store_colours(target, pixels, np.zeros((0, 4), np.float32))
+        selection = steps.select_samples(context, inputs)
+        if not len(selection.pixels):
+            steps.store_colours(view.target, selection.pixels, np.zeros((0, 4), np.float32))
             run_process(pass_.postProcess, frame)
             return PassReport(left_out="its mask selects no pixel", stages=stages.ms)
-        state = frame.session.state(pass_, TracingState)
-        state.update(pass_)
-        scene = state.scene(pass_, frame, view, inputs)
-
-        def value(name: str) -> float:
-            return float(pass_value(frame.project, pass_, name))
-
-        samples = options.samples or int(value("RAYS_PER_PIXEL"))
-        accumulate = bool(value("ACCUMULATE"))
-        name = pass_.name or ""
-        work = Work(
-            scene,
-            state.generate,
-            state.exception,
-            width,
-            camera_record(view.camera, view.rect, state.geometry.centre),
-            camera_rays(view.camera, view.rect),
-            LaunchSettings(
-                samples,
-                options.threads,
-                options.tile,
-                str(pass_value(frame.project, pass_, "SAMPLER")),
-                accumulate or value("TARGET_ERROR") > 0,
-            ),
-            state.label,
-            service=state.service,
-        )
-        if not state.loaded:
-            work.load()
-            state.loaded = True
+        scene = steps.build_scene(context, inputs)
+        launch = steps.generate_rays(context, scene)
         stages.end("build")
-        progress = frame.session.progress
-
-        def tell(done: int, total: int) -> None:
-            progress(name, done, total)
-
-        if value("TARGET_ERROR") > 0:
-            shape = (height, width)
-            result = run_adaptive(work, pixels, shape, value("TARGET_ERROR"), tell)
-        else:
-            kept = state.kept(work, pixels) if accumulate else None
-            counts = _spp(pass_, mask, pixels, samples)
-            result = run_launch(work, pixels, tell, counts, kept)
+        result = steps.trace_and_shade(context, scene, launch, selection)
         stages.end("shade")
         stages.move("shade", "trace", result.counts.traced_share)
-        store_colours(target, pixels, result.colours)
+        film = steps.estimate_pixels(result, selection)
+        steps.store_colours(view.target, selection.pixels, film.colours)
         stages.end("read_back")
         run_process(pass_.postProcess, frame)
-        effects = effect_data(
-            state.decisions, state.facts, state.simulated, result.counts, stages.ms
-        )
-        notes = []
-        outliers = int(result.estimate.unreliable.sum())
-        if outliers:
-            notes.append(
-                f"in {outliers} pixels one sample outweighs all others: est_error is uncertain"
-            )
-        if result.counts.cut_layers:
-            notes.append(f"{result.counts.cut_layers} rays met more ignored hits than the limit")
-        shape = height, width
-        return PassReport(
-            pixels=len(pixels),
-            rays=dict(result.counts.rays),
-            avoided=width * height * samples - result.taken,
-            est_error=result.est_error,
-            nonfinite=result.counts.nonfinite,
-            blame=result.counts.blamed(width),
-            notes=tuple(notes),
-            stages=stages.ms,
-            samples=_scattered(result.estimate.taken, pixels, shape, np.int32),
-            error=_scattered(result.estimate.error, pixels, shape, np.float32),
-            effects=effects,
-        )
-
-
-def _scattered(
-    values: NDArray[Any], pixels: NDArray[np.int64], shape: tuple[int, int], dtype: type
-) -> NDArray[Any]:
-    """An image of ``values`` at ``pixels``, zero elsewhere."""
-    image: NDArray[Any] = np.zeros(shape[0] * shape[1], dtype)
-    image[pixels] = values
-    return image.reshape(shape)
-
-
-def _spp(
-    pass_: RaytracePass,
-    mask: NDArray[Any] | None,
-    pixels: NDArray[np.int64],
-    samples: int,
-) -> NDArray[np.int64] | None:
-    """Samples of each pixel where the mask's weights say how many; None: the same for all."""
-    if mask is None or pass_.mask is None or pass_.mask.weight != "spp":
-        return None
-    weight = np.clip(mask.reshape(-1)[pixels].astype(np.float64), 0.0, 1.0)
-    return np.maximum(np.rint(weight * samples), 1).astype(np.int64)
+        return steps.report_launch(context, scene, selection, result, film, stages.ms)

@@ -11,7 +11,8 @@ from nau_py.diagnostics.diagnostic import error
 from nau_py.diagnostics.errors import NauError
 from nau_py.diagnostics.location import NOWHERE
 from nau_py.graph.plan import Plan
-from nau_py.model.raytrace import RaytracePass, component
+from nau_py.model.raytrace import RaytracePass
+from nau_py.raytrace.selection.mask import read_mask
 
 TINT = (1.0, 0.1, 0.6)
 STRENGTH = 0.6
@@ -24,12 +25,9 @@ def mask_overlay(image: NDArray[Any], targets: dict[str, NDArray[Any]], plan: Pl
     """
     for step in plan.running:
         pass_ = step.pass_
-        if isinstance(pass_, RaytracePass) and pass_.mask and pass_.mask.texture in targets:
-            values = targets[pass_.mask.texture]
-            weight = values[..., component(pass_.mask.mask, values.shape[2])].astype(np.float64)
-            if values.dtype == np.uint8:
-                weight /= 255
-            return _tinted(image, np.clip(weight, 0, 1))
+        weights = read_mask(pass_, targets) if isinstance(pass_, RaytracePass) else None
+        if weights is not None:
+            return _tinted(image, np.clip(weights.astype(np.float64), 0, 1))
     raise NauError(
         error(
             "E004",

@@ -189,13 +189,8 @@ def _passes(project: Project, pipeline: Pipeline) -> Iterator[Control]:
             yield from _selectors(pass_, group)
 
 
-def selectors(pass_: MaskPass) -> list[Node]:
-    """Every selector of a mask pass, in file order."""
-    return [node for top in pass_.select for node in top.walk()]
-
-
 def _selectors(pass_: MaskPass, group: str) -> Iterator[Control]:
-    for index, node in enumerate(selectors(pass_)):
+    for index, node in enumerate(pass_.all_selectors()):
         for attribute in schema_of(type(node)).attributes:
             value, name = attribute.of(node), attribute.name
             if isinstance(value, int | float):
@@ -267,7 +262,7 @@ def _selector(project: Project, context: str) -> Node | None:
     for pipeline in project.pipelines:
         for pass_ in pipeline.passes:
             if isinstance(pass_, MaskPass) and pass_.name == name:
-                listed = selectors(pass_)
+                listed = pass_.all_selectors()
                 if index.isdigit() and int(index) < len(listed):
                     return listed[int(index)]
     return None

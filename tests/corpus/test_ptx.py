@@ -17,7 +17,7 @@ import nau_py
 from nau_py.model.node import Setting
 from nau_py.model.raytrace import RaytracePass
 from nau_py.raytrace.tracing.accelerator import Accelerator
-from nau_py.raytrace.tracing.geometry import RayGeometry, gather
+from nau_py.raytrace.tracing.geometry import RayGeometry, gather_triangles
 
 pytestmark = pytest.mark.corpus
 NAU, ORACLE = os.environ.get("NAU_CORPUS"), os.environ.get("NAU_ORACLE")
@@ -140,7 +140,7 @@ def traced(renderer: nau_py.Renderer) -> tuple[Accelerator, RayGeometry, Any]:
     """Embree over the scene of a project's raytrace pass, its triangles, its camera."""
     pass_ = next(p for p in renderer.pipeline.passes if isinstance(p, RaytracePass))
     world = renderer.session.world
-    geometry = gather(world.objects(pass_.scene_names), frozenset())
+    geometry = gather_triangles(world.objects(pass_.scene_names), frozenset())
     return Accelerator(geometry), geometry, world.camera(pass_.camera_name)
 
 

@@ -7,7 +7,7 @@ import pytest
 
 import nau_py
 from nau_py.raytrace.tracing.accelerator import Accelerator
-from nau_py.raytrace.tracing.geometry import gather
+from nau_py.raytrace.tracing.geometry import gather_triangles
 from nau_py.scene.mesh import Group, Mesh, SceneObject, pad4
 from tests.conftest import Folder
 from tests.hard.test_geometry import geometry, surface
@@ -40,7 +40,7 @@ def test_origin_1e7(folder: Folder) -> None:
     # mesh positions are float32: at 1e7 the box lies on a grid of one unit
     assert (np.abs(pictures[0] - pictures[1]).max(axis=-1) > 1e-3).mean() < 0.25
     assert np.isfinite(pictures[1]).all()
-    made = gather(
+    made = gather_triangles(
         [SceneObject("o", mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]), translated(1e7))]
     )
     np.testing.assert_array_equal(made.vertices, [[-0.5, -0.5, 0], [0.5, -0.5, 0], [-0.5, 0.5, 0]])
@@ -84,7 +84,7 @@ def test_watertight_offset() -> None:
     ball = primitives.sphere(64, 32, "m")
     matrix = np.eye(4)
     matrix[:3, 3] = (148376, 1234, -223423)
-    made = gather([SceneObject("o", ball, matrix)])
+    made = gather_triangles([SceneObject("o", ball, matrix)])
     rng = np.random.default_rng(1)
     direction = rng.standard_normal((200_000, 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
@@ -95,7 +95,7 @@ def test_watertight_offset() -> None:
 
 def test_degenerate() -> None:
     """Faces without area are left out and counted with the first one's place; others stay."""
-    made = gather(
+    made = gather_triangles(
         [
             SceneObject(
                 "thing",
@@ -129,7 +129,7 @@ def test_nan_inf_vertex(folder: Folder) -> None:
 def test_huge_coord() -> None:
     """Beyond 1.844e18 a face is left out; below, what is found is finite."""
     for scale, kept in ((1e12, 1), (1e18, 1), (1e19, 0)):
-        made = gather(
+        made = gather_triangles(
             [SceneObject("o", mesh([(0, 0, 0), (scale, 0, 0), (0, scale, 0)], [(0, 1, 2)]))]
         )
         assert len(made.triangles) == kept
@@ -148,7 +148,7 @@ def test_coplanar_duplicate() -> None:
     for second in ((0, 1, 2), (0, 2, 1), (1, 2, 0)):
         first = SceneObject("a", mesh(vertices, [(0, 1, 2)]))
         other = SceneObject("b", mesh(vertices, [second]))
-        made = gather([first, other])
+        made = gather_triangles([first, other])
         assert len(made.triangles) == 1
         assert made.item.tolist() == [1]
         assert made.dropped.counts == {"the same as another": 1}

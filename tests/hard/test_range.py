@@ -8,7 +8,7 @@ import pytest
 import nau_py
 from nau_py.raytrace.kernels.path.camera import ITEM
 from nau_py.raytrace.kernels.path.film import update_film
-from nau_py.raytrace.tracing.dispatch import Estimate
+from nau_py.raytrace.tracing.estimate import PixelEstimates
 from tests.conftest import PROJECTS, ROOT, Folder
 from tests.raytrace.studio import colour, picture, program, square, studio
 
@@ -54,9 +54,9 @@ def test_tonemap_inf_nan() -> None:
     assert found.tolist() == expected
 
 
-def sums(values: np.ndarray) -> Estimate:  # type: ignore[type-arg]
+def sums(values: np.ndarray) -> PixelEstimates:  # type: ignore[type-arg]
     """The estimate of one pixel from grey samples."""
-    estimate = Estimate.empty(1)
+    estimate = PixelEstimates.empty(1)
     items = np.zeros(1, ITEM)
     items["count"] = len(values)
     radiance = np.ascontiguousarray(np.repeat(values[:, None], 4, axis=1), np.float32)
@@ -112,7 +112,7 @@ def test_merged_sums() -> None:
     """In two parts, the same as in one."""
     values = np.random.default_rng(3).random(5000)
     whole = sums(values)
-    estimate = Estimate.empty(1)
+    estimate = PixelEstimates.empty(1)
     items = np.zeros(1, ITEM)
     for part in (values[:1234], values[1234:]):
         items["count"] = len(part)

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 import nau_py
 from nau_py.raytrace.tracing.accelerator import Accelerator
-from nau_py.raytrace.tracing.camera_rays import camera_rays
-from nau_py.raytrace.tracing.geometry import gather
+from nau_py.raytrace.tracing.camera_rays import make_camera_rays
+from nau_py.raytrace.tracing.geometry import gather_triangles
 from nau_py.scene.world import World
 from tests.conftest import PROJECTS
 
@@ -68,9 +68,9 @@ def test_no_seam_of_black_at_mask_borders(selective: nau_py.Frame) -> None:
 def materials_seen(name: str) -> NDArray[np.str_]:
     """The material that the ray through each pixel centre hits first, or ``sky``."""
     world = World(nau_py.load(PROJECTS / name / "project.xml"), SIZE)
-    geometry = gather(world.objects(["Plaza"]))
+    geometry = gather_triangles(world.objects(["Plaza"]))
     x, y = np.meshgrid(np.arange(SIZE[0]) + 0.5, np.arange(SIZE[1])[::-1] + 0.5)
-    rays = camera_rays(world.camera("Eye"), world.viewport("Window"))
+    rays = make_camera_rays(world.camera("Eye"), world.viewport("Window"))
     found = Accelerator(geometry).intersect(
         *rays(x.reshape(-1).astype(np.float32), y.reshape(-1).astype(np.float32))
     )
@@ -93,9 +93,9 @@ def test_ray_and_raster_agree(name: str, request: pytest.FixtureRequest) -> None
     frame: nau_py.Frame = request.getfixturevalue(name)
     project = nau_py.load(PROJECTS / name / "project.xml")
     world = World(project, SIZE)
-    geometry = gather(world.objects(["Plaza"]))
+    geometry = gather_triangles(world.objects(["Plaza"]))
     x, y = np.meshgrid(np.arange(SIZE[0]) + 0.5, np.arange(SIZE[1])[::-1] + 0.5)
-    rays = camera_rays(world.camera("Eye"), world.viewport("Window"))
+    rays = make_camera_rays(world.camera("Eye"), world.viewport("Window"))
     origin, direction = rays(x.reshape(-1).astype(np.float32), y.reshape(-1).astype(np.float32))
     found = Accelerator(geometry).intersect(origin, direction)
     triangle = found.triangle.reshape(x.shape)

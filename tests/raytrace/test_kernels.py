@@ -8,7 +8,7 @@ import pytest
 from nau_py.raytrace.kernels.core.sampling import pcg4d
 from nau_py.raytrace.kernels.core.tables import PATH
 from nau_py.raytrace.kernels.path.camera import CAMERA, ITEM, SOBOL, STRATA, generate_camera_rays
-from nau_py.raytrace.tracing.random import uniform
+from nau_py.raytrace.tracing.random import sample_uniform
 from nau_py.raytrace.tracing.ray_texture import RayTexture
 from tests.conftest import Folder
 
@@ -34,7 +34,7 @@ def test_pcg4d_against_its_definition_in_python_integers() -> None:
     assert found == [reference([int(k) for k in row]) for row in keys]
     # compiled, it is what random numbers are made of
     pixel, sample = keys[:, 0].copy(), keys[:, 1].copy()
-    numbers = uniform(7, pixel, sample, 3)
+    numbers = sample_uniform(7, pixel, sample, 3)
     expected = [(reference([int(p), int(s), 3, 7]) >> 8) / 2**24 for p, s in zip(pixel, sample)]
     np.testing.assert_array_equal(numbers, np.float32(expected))
 
@@ -42,17 +42,19 @@ def test_pcg4d_against_its_definition_in_python_integers() -> None:
 def test_numbers_are_uniform_and_keyed() -> None:
     pixel = np.arange(200_000, dtype=np.uint32)
     sample = np.zeros_like(pixel)
-    values = uniform(0, pixel, sample, 0)
+    values = sample_uniform(0, pixel, sample, 0)
     counts, _ = np.histogram(values, 64, (0, 1))
     chi2 = ((counts - counts.mean()) ** 2 / counts.mean()).sum()
     assert chi2 < 120  # 63 degrees of freedom: p < 1e-5 beyond
     for other in (
-        uniform(1, pixel, sample, 0),
-        uniform(0, pixel, sample + np.uint32(1), 0),
-        uniform(0, pixel, sample, 1),
+        sample_uniform(1, pixel, sample, 0),
+        sample_uniform(0, pixel, sample + np.uint32(1), 0),
+        sample_uniform(0, pixel, sample, 1),
     ):
         assert abs(np.corrcoef(values, other)[0, 1]) < 0.01
-    np.testing.assert_array_equal(uniform(0, pixel[500:600], sample[500:600], 0), values[500:600])
+    np.testing.assert_array_equal(
+        sample_uniform(0, pixel[500:600], sample[500:600], 0), values[500:600]
+    )
 
 
 def sample_points(rule: int, count: int, pixel: int = 123) -> np.ndarray:  # type: ignore[type-arg]

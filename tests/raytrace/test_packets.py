@@ -10,8 +10,8 @@ import pytest
 import nau_py
 from nau_py.raytrace.kernels.path.camera import ITEM
 from nau_py.raytrace.tracing.accelerator import Accelerator
-from nau_py.raytrace.tracing.dispatch import _parts, packet_shift
-from nau_py.raytrace.tracing.geometry import gather
+from nau_py.raytrace.tracing.dispatch import compute_packet_shift, split_items
+from nau_py.raytrace.tracing.geometry import gather_triangles
 from nau_py.scene.world import World
 from tests.conftest import PROJECTS, Folder, RayProject
 from tests.raytrace.studio import colour, program, sphere, square, studio
@@ -57,7 +57,7 @@ def test_packets_find_what_single_rays_find(folder: Folder, ray_project: RayProj
     parts: list[Any] = module.found
     origin, direction, t = (np.concatenate([part[k] for part in parts]) for k in range(3))
     assert len(t) > 0.7 * frame.report["totals"]["rays"]["primary"]
-    single = Accelerator(gather(World(project, (96, 96)).objects(["S"]))).intersect(
+    single = Accelerator(gather_triangles(World(project, (96, 96)).objects(["S"]))).intersect(
         origin, direction
     )
     assert (single.triangle >= 0).all()
@@ -118,9 +118,9 @@ def test_tiles_do_not_split_what_is_traced_together(samples: int, tile: int) -> 
     pixels = np.flatnonzero(rng.random(1000) < 0.3)
     items = np.zeros(len(pixels), ITEM)
     items["pixel"], items["count"] = pixels, rng.integers(0, samples + 1, len(pixels))
-    shift = packet_shift(samples)
+    shift = compute_packet_shift(samples)
     assert samples << shift <= max(16, samples)
-    parts = _parts(items, tile, shift)
+    parts = split_items(items, tile, shift)
     assert np.concatenate([np.arange(p.start, p.stop) for p in parts]).tolist() == list(
         range(len(pixels))
     )

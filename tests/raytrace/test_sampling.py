@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.tracing.adaptive import spread
+from nau_py.raytrace.tracing.adaptive import dilate
 from tests.conftest import Folder
 from tests.raytrace.studio import colour, picture, program, square, studio
 
@@ -36,7 +36,7 @@ def penumbra(folder: Folder, settings: str = "", spp: int = 64) -> nau_py.Projec
 def test_spread_reaches_the_eight_neighbours() -> None:
     grid = np.zeros((5, 6), bool)
     grid[0, 0] = grid[3, 4] = True
-    found = spread(grid)
+    found = dilate(grid)
     expected = np.zeros((5, 6), bool)
     expected[0:2, 0:2] = expected[2:5, 3:6] = True
     np.testing.assert_array_equal(found, expected)

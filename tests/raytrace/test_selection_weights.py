@@ -17,12 +17,12 @@ from nau_py.model.mask import (
     RegionSelector,
     ShadowBorderSelector,
 )
-from nau_py.raytrace.selection.weights import Visible, weights
+from nau_py.raytrace.selection.weights import VisibleSurfaces, compute_weights
 from tests.conftest import Folder, pixel_rays
 
 
 @pytest.fixture
-def seen() -> Visible:
+def seen() -> VisibleSurfaces:
     """4 x 8 pixels: glass left, wood right, nothing in the top row; depth grows to the right."""
     item = np.zeros((4, 8), np.int32)
     item[:, 4:] = 1
@@ -31,42 +31,46 @@ def seen() -> Visible:
     position[..., 2] = -np.arange(8)
     glass = {"SPECULAR": (0.1, 0.9, 0.2, 1.0), "SHININESS": (50.0,)}
     wood = {"SPECULAR": (0.2, 0.2, 0.2, 1.0), "SHININESS": (5.0,)}
-    return Visible(position, item, [("Vidro", glass), ("Wood", wood)], np.zeros(3))
+    return VisibleSurfaces(position, item, [("Vidro", glass), ("Wood", wood)], np.zeros(3))
 
 
-def test_material_by_name_and_prefix(seen: Visible) -> None:
+def test_material_by_name_and_prefix(seen: VisibleSurfaces) -> None:
     expected = (seen.item == 0).astype(float)
     for name in ("Vidro", "Vid*"):
-        np.testing.assert_array_equal(weights([MaterialSelector(name=name)], seen), expected)
-    np.testing.assert_array_equal(weights([MaterialSelector(name="Nothing")], seen), 0)
+        np.testing.assert_array_equal(
+            compute_weights([MaterialSelector(name=name)], seen), expected
+        )
+    np.testing.assert_array_equal(compute_weights([MaterialSelector(name="Nothing")], seen), 0)
 
 
-def test_material_property(seen: Visible) -> None:
+def test_material_property(seen: VisibleSurfaces) -> None:
     glass = (seen.item == 0).astype(float)
     above = PropertySelector(name="SPECULAR", above=0.4)
-    np.testing.assert_array_equal(weights([above], seen), glass)
+    np.testing.assert_array_equal(compute_weights([above], seen), glass)
     between = PropertySelector(name="SHININESS", above=1.0, below=10.0)
-    np.testing.assert_array_equal(weights([between], seen), seen.item == 1)
-    np.testing.assert_array_equal(weights([PropertySelector(name="GLOSS", above=0.0)], seen), 0)
+    np.testing.assert_array_equal(compute_weights([between], seen), seen.item == 1)
+    np.testing.assert_array_equal(
+        compute_weights([PropertySelector(name="GLOSS", above=0.0)], seen), 0
+    )
 
 
-def test_region(seen: Visible) -> None:
-    half = weights([RegionSelector(height=0.5)], seen)
+def test_region(seen: VisibleSurfaces) -> None:
+    half = compute_weights([RegionSelector(height=0.5)], seen)
     np.testing.assert_array_equal(half[:2], 1)
     np.testing.assert_array_equal(half[2:], 0)
-    soft = weights([RegionSelector(width=0.5, edge=4.0)], seen)
+    soft = compute_weights([RegionSelector(width=0.5, edge=4.0)], seen)
     # the line is at 4; pixel centres 3.5 and 4.5 lie half a pixel to either side of it
     np.testing.assert_allclose(soft[1, 3:6], [0.625, 0.375, 0.125])
 
 
-def test_distance_and_floor(seen: Visible) -> None:
-    found = weights([DistanceSelector(near=2.0, far=6.0, floor=0.2)], seen)
+def test_distance_and_floor(seen: VisibleSurfaces) -> None:
+    found = compute_weights([DistanceSelector(near=2.0, far=6.0, floor=0.2)], seen)
     np.testing.assert_allclose(found[0], [1, 1, 1, 0.8, 0.6, 0.4, 0.2, 0.2], rtol=1e-6)
     np.testing.assert_allclose(found[3], 0.2)  # the background is beyond everything
 
 
-def test_gaze(seen: Visible) -> None:
-    found = weights([GazeSelector(x=0.25, y=0.5, inner=0.25, outer=1.0, floor=0.1)], seen)
+def test_gaze(seen: VisibleSurfaces) -> None:
+    found = compute_weights([GazeSelector(x=0.25, y=0.5, inner=0.25, outer=1.0, floor=0.1)], seen)
     x, y = np.meshgrid(np.arange(8) + 0.5 - 2, np.arange(4) + 0.5 - 2)
     r = np.hypot(x, y) / 4
     expected = np.interp(r, [0.25, 1.0], [1.0, 0.1])
@@ -74,18 +78,20 @@ def test_gaze(seen: Visible) -> None:
     assert (found == 1).sum() == 4
 
 
-def test_combinations(seen: Visible) -> None:
+def test_combinations(seen: VisibleSurfaces) -> None:
     glass, low = MaterialSelector(name="Vidro"), RegionSelector(height=0.25)
     a, b = seen.item == 0, np.arange(4)[:, None] < 1
-    both = weights([AndSelector(parts=[glass, low])], seen)
+    both = compute_weights([AndSelector(parts=[glass, low])], seen)
     np.testing.assert_array_equal(both, a & b)
-    np.testing.assert_array_equal(weights([OrSelector(parts=[glass, low])], seen), a | b)
-    np.testing.assert_array_equal(weights([glass, low], seen), a | b)
-    np.testing.assert_array_equal(weights([NotSelector(parts=[glass, low])], seen), ~(a | b))
-    np.testing.assert_array_equal(weights([], seen), 1)
+    np.testing.assert_array_equal(compute_weights([OrSelector(parts=[glass, low])], seen), a | b)
+    np.testing.assert_array_equal(compute_weights([glass, low], seen), a | b)
+    np.testing.assert_array_equal(
+        compute_weights([NotSelector(parts=[glass, low])], seen), ~(a | b)
+    )
+    np.testing.assert_array_equal(compute_weights([], seen), 1)
 
 
-def test_shadow_border(seen: Visible) -> None:
+def test_shadow_border(seen: VisibleSurfaces) -> None:
     """A map whose left half is near the light: the border is one texel on either side."""
     depth = np.ones((8, 8, 1), np.float32)
     depth[:, :4] = 0.2
@@ -96,14 +102,14 @@ def test_shadow_border(seen: Visible) -> None:
     seen.position[..., 2] = 0.5
     seen.cameras["Sun"] = np.eye(4)
     border = ShadowBorderSelector(texture="L::depth", camera="Sun")
-    np.testing.assert_array_equal(weights([border], seen)[0], [0, 0, 0, 1, 1, 0, 0, 0])
+    np.testing.assert_array_equal(compute_weights([border], seen)[0], [0, 0, 0, 1, 1, 0, 0, 0])
     wide = ShadowBorderSelector(texture="L::depth", camera="Sun", radius=2)
-    np.testing.assert_array_equal(weights([wide], seen)[0], [0, 0, 1, 1, 1, 1, 0, 0])
-    np.testing.assert_array_equal(weights([border], seen)[3], 0)
+    np.testing.assert_array_equal(compute_weights([wide], seen)[0], [0, 0, 1, 1, 1, 1, 0, 0])
+    np.testing.assert_array_equal(compute_weights([border], seen)[3], 0)
     # the blocker is 0.3 away, one texel 0.125: a light of half angle atan(0.5) reaches it, no less
     for spread, reaches in ((0.5, 1), (0.4, 0)):
         light = ShadowBorderSelector(texture="L::depth", camera="Sun", spread=spread)
-        assert weights([light], seen)[0, 4] == reaches
+        assert compute_weights([light], seen)[0, 4] == reaches
 
 
 MASKED = """\

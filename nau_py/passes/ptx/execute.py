@@ -14,9 +14,11 @@ from nau_py.passes.ptx.optix import OptixState
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.rt import RtState
 from nau_py.passes.report import PassReport, Stages
+from nau_py.passes.tracing.textures import read_inputs
 from nau_py.raytrace.ptx.optix.optix6 import STACK_OVERFLOW
 from nau_py.raytrace.ptx.runtime.frame import BUFFER_INDEX, NO_CALLABLE
 from nau_py.raytrace.ptx.runtime.guarded import open_marks
+from nau_py.raytrace.selection.pixels import select_pixels
 
 if TYPE_CHECKING:
     from nau_py.raytrace.ptx.runtime.launch import Launched
@@ -67,9 +69,7 @@ class PtxState:
 
 def execute_ptx(pass_: RaytracePass, frame: FrameContext) -> PassReport:
     """Launch the pass's programs over its target, or over the pixels that its mask selects."""
-    from nau_py.passes.tracing import force_mask, read_inputs, read_mask
     from nau_py.raytrace.ptx.runtime.launch import run_launch
-    from nau_py.raytrace.tracing.dispatch import select
 
     session = frame.session
     options = session.options
@@ -79,10 +79,7 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext) -> PassReport:
     stages = Stages()
     pixels = None
     if pass_.mask is not None:
-        if options.mask != "project":
-            force_mask(pass_, frame, float(options.mask == "all"))
-        mask = read_mask(pass_, read_inputs(pass_, frame))
-        pixels = select(mask, target.width, target.height)
+        pixels = select_pixels(read_inputs(pass_, frame).mask, target.width, target.height)
         stages.end("read_back")
     environment = session.state(pass_, PtxState).environment
     launch = environment.begin(pass_, frame, view)

@@ -252,7 +252,7 @@ class OptixState:
     ) -> None:
         """Give what programs wrote to the textures. ``pixels``: those that the mask selects, of
         the first one; the others get the clear value."""
-        from nau_py.passes.tracing import store_selected
+        from nau_py.passes.tracing.textures import store_selected
 
         self.resources.give_back()
         for name, texture in self._targets(pass_, target):

@@ -68,7 +68,7 @@ class Programs:
     :class:`~nau_py.ProgramError` with what cannot be run."""
 
     def __init__(self, pass_: RaytracePass, session: Session) -> None:
-        from nau_py.passes.tracing import trust_rule
+        from nau_py.passes.tracing.programs import make_trust_rule
 
         self.folder = session.project.folder
         self.label = f"project '{session.project.name}'"
@@ -78,7 +78,7 @@ class Programs:
             path = self._path(program)
             if path not in self.modules:
                 where, label = program.where("file"), self._label(program)
-                trust_rule(session).check(path, where, label)
+                make_trust_rule(session).check(path, where, label)
                 try:
                     self.modules[path] = read_module(path)
                 except (OSError, PtxError) as problem:

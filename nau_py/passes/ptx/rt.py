@@ -120,7 +120,7 @@ class RtState:
     ) -> None:
         """Give the colours to the target. ``pixels``: those that the mask selects; the others get
         the clear value."""
-        from nau_py.passes.tracing import store_selected
+        from nau_py.passes.tracing.textures import store_selected
 
         self.resources.give_back()
         count = target.width * target.height

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.core.codes import ANY_HIT_CODES, CLOSEST_CODES, MISS_CODES
 from nau_py.raytrace.programs.description import (
@@ -15,13 +16,11 @@ from nau_py.raytrace.programs.description import (
     MISS,
     RAY_GENERATION,
 )
-from nau_py.raytrace.tracing.arrays import F32
-from nau_py.raytrace.tracing.batches import Launch
 
 PINHOLE, THIN_LENS = 1, 2
 
 
-def magenta(launch: Launch) -> F32:
+def magenta(launch: object) -> NDArray[np.float32]:
     """Paints failed samples magenta."""
     return np.array([1.0, 0.0, 1.0, 1.0], np.float32)
 

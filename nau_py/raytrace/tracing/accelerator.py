@@ -1,9 +1,8 @@
-"""Embree behind one class; nobody else imports embreex.
+"""Embree behind one class; no other module imports embreex.
 
-The library inside embreex's wheel is called through its C interface: compiled kernels send single
-rays (``kernels/intersect/embree.py``) without a Python object in between, with their own ``tmax``.
-Scenes are always robust, an empty one answers with misses, and no ray that is not finite is ever
-sent.
+The library inside embreex's wheel is called through its C interface: compiled kernels trace rays
+(``kernels/intersect/embree.py``) without a Python object in between, each with its own ``tmax``.
+Scenes are always built as robust; in an empty scene every ray misses; Embree gets finite rays only.
 """
 
 from __future__ import annotations
@@ -22,6 +21,8 @@ import llvmlite.binding
 import numpy as np
 from numpy.typing import NDArray
 
+from nau_py.raytrace.kernels.core.tables import SCENE
+from nau_py.raytrace.kernels.intersect.ray_arrays import find_occluded_rays, intersect_rays
 from nau_py.raytrace.tracing.arrays import F32, Mask
 from nau_py.raytrace.tracing.geometry import RayGeometry
 
@@ -56,7 +57,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
 
 @lru_cache(maxsize=1)
 def _library() -> ctypes.CDLL:
-    """Embree, with its symbols known to compiled kernels."""
+    """Load Embree and make its symbols known to compiled kernels."""
     package = Path(embreex.__file__).parent
     found = [*sorted((package.parent / "embreex.libs").glob("libembree*"))]
     found += [p for p in sorted(package.rglob("*embree4*")) if p.suffix in (".dll", ".dylib")]
@@ -81,14 +82,14 @@ def _device() -> int:
 
 
 def embree_version() -> str:
-    """The version of the Embree library inside embreex's wheel."""
+    """Return the version of the Embree library inside embreex's wheel."""
     number = int(_library().rtcGetDeviceProperty(_device(), _VERSION_PROPERTY))
     return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
 
 
 @dataclass(slots=True)
 class Triangles:
-    """Positions float32 (n, 3) or (n, 4) and triangles uint32 (m, 3), shared, not copied."""
+    """Positions float32 (n, 3) or (n, 4) and triangles uint32 (m, 3); Embree shares both arrays."""
 
     positions: F32
     triangles: NDArray[np.uint32]
@@ -110,8 +111,8 @@ class Triangles:
 
 @dataclass(slots=True)
 class Custom:
-    """Primitives that functions describe: addresses of ``RTCBoundsFunction`` and
-    ``RTCIntersectFunctionN``, and of what the first one is given."""
+    """Primitives described by functions: addresses of an ``RTCBoundsFunction``, of an
+    ``RTCIntersectFunctionN``, and of their user data."""
 
     count: int
     bounds: int
@@ -121,7 +122,7 @@ class Custom:
     def make(self, rtc: ctypes.CDLL, device: int) -> int:
         made = int(rtc.rtcNewGeometry(device, _USER))
         rtc.rtcSetGeometryUserPrimitiveCount(made, self.count)
-        rtc.rtcSetGeometryUserData(made, self.user)  # the bounds function is given no other
+        rtc.rtcSetGeometryUserData(made, self.user)  # the bounds function gets nothing else
         rtc.rtcSetGeometryBoundsFunction(made, self.bounds, None)
         rtc.rtcSetGeometryIntersectFunction(made, self.intersect)
         return made
@@ -132,7 +133,7 @@ Parts = Sequence[Triangles | Custom]
 
 @dataclass(eq=False)
 class _Shared:
-    """What an Embree scene shares: kept alive as long as the scene."""
+    """Arrays that an Embree scene shares; they live as long as the scene."""
 
     parts: Parts
 
@@ -156,14 +157,14 @@ def _build(parts: Parts, flags: int) -> tuple[int, _Shared]:
 
 
 def build_groups(parts: Parts) -> tuple[int, object]:
-    """An Embree scene with a geometry for each part, by index. Returns its handle, and what must
-    be kept as long as it."""
+    """Build an Embree scene with one geometry for each part. Return its handle, and the object to
+    keep while the handle is used. Raises MemoryError if Embree fails."""
     return _build(parts, _ROBUST | _FILTER)
 
 
 @dataclass(slots=True)
 class Intersections:
-    """Nearest hits of n rays: ``triangle`` int32 (n,), -1 for a miss; barycentrics ``u`` ``v`` of
+    """Closest hits of n rays: ``triangle`` int32 (n,), -1 for a miss; barycentrics ``u`` ``v`` of
     vertices 1 and 2; distance ``t`` in ray-direction lengths. float32 (n,)."""
 
     triangle: NDArray[np.int32]
@@ -175,8 +176,8 @@ class Intersections:
 class Accelerator:
     """Acceleration structures over the triangles of a :class:`RayGeometry`.
 
-    What stands still and what moves lie in two Embree scenes, ``scene`` and ``moving``: handles
-    for kernels, 0 where there is no triangle. Positions are world space less the centre.
+    Static and moving triangles form two Embree scenes, ``scene`` and ``moving``: handles for
+    kernels, 0 for a scene without triangles. Positions are world space less the centre.
     """
 
     def __init__(self, geometry: RayGeometry) -> None:
@@ -187,7 +188,7 @@ class Accelerator:
         self.rebuild_moving(geometry)
 
     def rebuild_moving(self, geometry: RayGeometry) -> None:
-        """Build anew what moves; ``geometry`` has the same triangles at other places."""
+        """Rebuild the scene of moving triangles; ``geometry`` has the same triangles, moved."""
         self.moving = self._build("moving", geometry, slice(geometry.first_moving, None))
 
     def _build(self, name: str, geometry: RayGeometry, part: slice) -> int:
@@ -200,18 +201,14 @@ class Accelerator:
         return scene
 
     def _record(self) -> NDArray[Any]:
-        from nau_py.raytrace.kernels.core.tables import SCENE
-
         record = np.zeros(1, SCENE)
         record["standing"], record["moving"] = self.scene, self.moving
         record["first_moving"] = self.first_moving
         return record
 
     def intersect(self, origin: F32, direction: F32, tmax: F32 | None = None) -> Intersections:
-        """Nearest hits of float32 (n, 3) rays; ``tmax`` float32 (n,). Rays that are not finite
-        hit nothing."""
-        from nau_py.raytrace.kernels.intersect.ray_arrays import intersect_rays
-
+        """Return the closest hits of float32 (n, 3) rays; ``tmax`` float32 (n,). Rays that are not
+        finite hit nothing."""
         n = len(origin)
         found = Intersections(np.empty(n, np.int32), *np.zeros((3, n), np.float32))
         limit = np.array([np.inf] if tmax is None else tmax, np.float32)
@@ -220,9 +217,7 @@ class Accelerator:
         return found
 
     def occluded(self, origin: F32, direction: F32, tmax: F32 | None = None) -> Mask:
-        """Whether anything is hit, bool (n,)."""
-        from nau_py.raytrace.kernels.intersect.ray_arrays import find_occluded_rays
-
+        """Test if rays hit anything before ``tmax``, bool (n,)."""
         limit = np.array([np.inf] if tmax is None else tmax, np.float32)
         o, d = np.ascontiguousarray(origin, "f4"), np.ascontiguousarray(direction, "f4")
         found = np.zeros(len(o), bool)

@@ -1,4 +1,4 @@
-"""The camera as kernels read it, and primary rays for programs of a project."""
+"""The camera as kernels read it, and camera rays for programs written in Python."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from nau_py.scene.mesh import F64
 from nau_py.scene.viewport import Rect
 
 CameraRays = Callable[[F32, F32], tuple[F32, F32]]
+"""Image points (n,) in pixels to origins and unit directions, float32 (n, 3)."""
 
 
-def camera_record(camera: CameraState, rect: Rect, centre: F64 | None = None) -> NDArray[Any]:
-    """The record of ``camera`` over the viewport ``rect``, relative to ``centre``; shape (1,)."""
+def encode_camera(camera: CameraState, rect: Rect, centre: F64 | None = None) -> NDArray[Any]:
+    """Return the record of ``camera`` for the viewport ``rect``, relative to ``centre``, (1,)."""
     made = np.zeros(1, kernel.CAMERA)
     v = camera.values
     made["position"] = camera.position - (0.0 if centre is None else centre)
@@ -36,14 +37,14 @@ def camera_record(camera: CameraState, rect: Rect, centre: F64 | None = None) ->
     return made
 
 
-def camera_rays(camera: CameraState, rect: Rect, centre: F64 | None = None) -> CameraRays:
-    """A function from image points, pixels from the lower left corner of the target, to rays.
+def make_camera_rays(camera: CameraState, rect: Rect, centre: F64 | None = None) -> CameraRays:
+    """Return a function from image points, pixels from the target's lower left corner, to rays.
 
-    Pixel (i, j) is rasterised at (i + 0.5, j + 0.5). Origins lie on the near plane, so that rays
-    see what the rasteriser does not clip; directions are unit vectors. Computed in float64,
+    Pixel (i, j) is rasterised at (i + 0.5, j + 0.5). Origins are on the near plane, so that rays
+    meet what the rasteriser does not clip; directions are unit vectors. Computed in float64,
     returned as float32 (n, 3), world space less ``centre``.
     """
-    record = camera_record(camera, rect, centre)
+    record = encode_camera(camera, rect, centre)
 
     def rays(x: F32, y: F32) -> tuple[F32, F32]:
         origin = np.empty((len(x), 3), np.float32)

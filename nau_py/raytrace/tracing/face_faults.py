@@ -1,4 +1,4 @@
-"""What is wrong with triangles that rays are to hit."""
+"""Warnings about triangles that rays cannot hit well."""
 
 from __future__ import annotations
 
@@ -6,12 +6,14 @@ from pathlib import Path
 
 from nau_py.diagnostics.diagnostic import Diagnostic, warning
 from nau_py.model.passes import Pass
-from nau_py.raytrace.tracing.geometry import PRECISION, Dropped, precision
+from nau_py.raytrace.tracing.geometry import PRECISION, DroppedFaces, measure_precision
 from nau_py.scene.mesh import SceneObject
 
 
-def face_faults(pass_: Pass, objects: list[SceneObject], dropped: Dropped) -> list[Diagnostic]:
-    """Which faces of a pass rays leave out, and where float32 is short for its objects."""
+def find_face_faults(
+    pass_: Pass, objects: list[SceneObject], dropped: DroppedFaces
+) -> list[Diagnostic]:
+    """Return M005 for faces that are left out, M006 for objects that float32 rounds too much."""
     found = []
     for reason, count in dropped.counts.items():
         name, face = dropped.first[reason]
@@ -21,7 +23,7 @@ def face_faults(pass_: Pass, objects: list[SceneObject], dropped: Dropped) -> li
         )
         found.append(warning("M005", pass_.location, message))
     for item in objects:
-        step, feature = precision(item)
+        step, feature = measure_precision(item)
         if step > PRECISION * feature:
             message = (
                 f"pass '{pass_.name}': the coordinates of '{Path(item.name).name}' are rounded to "

@@ -1,4 +1,4 @@
-"""The triangles of a pass as one array about their centre, with what programs read at a hit."""
+"""The triangles of a pass in one array, relative to their centre, with vertex attributes."""
 
 from __future__ import annotations
 
@@ -15,19 +15,20 @@ from nau_py.scene.mesh import F64, SceneObject, transform_mesh
 
 I32 = NDArray[np.int32]
 PRECISION = 1e-4
-"""Rounding of coordinates, in parts of the smallest feature, from which a warning is due."""
+"""Rounding of coordinates, relative to the smallest triangle, above which a warning is reported."""
 FAR_FACTOR = 4.0
-"""A scene is moved to the origin where its centre lies further off than this many half sizes."""
+"""A scene is moved to the origin if its centre is farther away than this many half sizes."""
 
 
 @dataclass(slots=True)
-class Dropped:
+class DroppedFaces:
     """Faces left out, by reason, and the first of each: (object, face index)."""
 
     counts: dict[str, int] = field(default_factory=dict)
     first: dict[str, tuple[str, int]] = field(default_factory=dict)
 
     def add(self, reason: str, owner: str, faces: NDArray[np.bool_]) -> None:
+        """Add the faces of object ``owner`` that are set in ``faces`` (n,)."""
         if faces.any():
             self.counts[reason] = self.counts.get(reason, 0) + int(faces.sum())
             self.first.setdefault(reason, (owner, int(np.argmax(faces))))
@@ -37,10 +38,10 @@ class Dropped:
 class RayGeometry:
     """All triangles: ``vertices`` float32 (n, 3) and ``triangles`` int32 (m, 3).
 
-    World space less ``centre``, float64 (3,): zero unless the scene lies far off. ``material``:
-    int32 (m,) index into ``materials``, the material group names; ``item``: int32 (m,) index of
-    the object, of those given that have triangles. Attribute arrays are float32 (n, 4); a missing
-    one is None. The last ``moving`` triangles belong to objects that move.
+    World space less ``centre``, float64 (3,): zero unless the scene is far from the origin.
+    ``material``: int32 (m,) index into ``materials``, the material group names; ``item``: int32
+    (m,) index of the object among those with triangles. Attribute arrays are float32 (n, 4); a
+    missing one is None. The last ``moving`` triangles belong to objects that move.
     """
 
     vertices: F32
@@ -53,22 +54,24 @@ class RayGeometry:
     item: I32 = field(default_factory=lambda: np.zeros(0, np.int32))
     centre: F64 = field(default_factory=lambda: np.zeros(3))
     moving: int = 0
-    dropped: Dropped = field(default_factory=Dropped)
+    dropped: DroppedFaces = field(default_factory=DroppedFaces)
 
     @property
     def first_moving(self) -> int:
+        """Index of the first triangle that moves."""
         return len(self.triangles) - self.moving
 
     @cached_property
     def smooth(self) -> NDArray[np.bool_]:
-        """Which triangles have vertex normals that differ, (m,)."""
+        """Triangles whose vertex normals differ, bool (m,)."""
         if self.normal is None:
             return np.zeros(len(self.triangles), bool)
         a, b, c = (self.normal[self.triangles[:, k]] for k in range(3))
         return np.asarray(((a != b) | (a != c)).any(axis=1))
 
 
-def _joined(parts: list[dict[str, Any]], counts: list[int], name: str) -> F32 | None:
+def _concatenate(parts: list[dict[str, Any]], counts: list[int], name: str) -> F32 | None:
+    """Concatenate attribute ``name`` of all meshes, zero where a mesh has none; None without it."""
     if not any(name in part for part in parts):
         return None
     return np.concatenate(
@@ -76,8 +79,8 @@ def _joined(parts: list[dict[str, Any]], counts: list[int], name: str) -> F32 | 
     )
 
 
-def _sound(points: F64, faces: I32, owner: str, dropped: Dropped) -> NDArray[np.bool_]:
-    """Which faces are kept: not those without area, nor those beyond what Embree takes."""
+def _find_valid(points: F64, faces: I32, owner: str, dropped: DroppedFaces) -> NDArray[np.bool_]:
+    """Find the faces with an area and with coordinates that Embree accepts; drop the others."""
     a, b, c = (points[faces[:, k]] for k in range(3))
     with np.errstate(all="ignore"):
         finite = np.asarray(np.isfinite(a + b + c).all(axis=1))
@@ -90,11 +93,11 @@ def _sound(points: F64, faces: I32, owner: str, dropped: Dropped) -> NDArray[np.
 
 
 HUGE = 1.844e18
-"""Coordinates beyond this are outside what Embree accepts (its FLT_LARGE)."""
+"""Largest coordinate that Embree accepts (its FLT_LARGE)."""
 
 
-def _duplicates(vertices: F32, triangles: I32) -> NDArray[np.bool_]:
-    """Faces whose three corners another, later face has as well, however it is wound."""
+def _find_duplicates(vertices: F32, triangles: I32) -> NDArray[np.bool_]:
+    """Find faces with the same three corners as a later face, in any order."""
     _, same = np.unique(vertices, axis=0, return_inverse=True)
     keys = np.sort(same.reshape(-1)[triangles], axis=1)[::-1]  # the last of equals is kept
     _, first = np.unique(keys, axis=0, return_index=True)
@@ -103,14 +106,14 @@ def _duplicates(vertices: F32, triangles: I32) -> NDArray[np.bool_]:
     return repeated
 
 
-def gather(
+def gather_triangles(
     objects: list[SceneObject], moving: Collection[str] = (), centre: F64 | None = None
 ) -> RayGeometry:
-    """The triangles of ``objects`` with their transforms applied; other primitives are left out.
+    """Gather the triangles of ``objects`` in world space; other primitives are left out.
 
-    ``moving``: names of objects that change place; ``centre``: what to move the scene by, chosen
-    if None. Faces that no ray can hit well are left out and listed in ``dropped``: without area,
-    not finite, too large, or the same as a later one.
+    ``moving``: names of objects that move; ``centre``: origin of the result, chosen if None. Faces
+    that no ray can hit well are left out and listed in ``dropped``: without area, not finite, too
+    large, or the same as a later one.
     """
     objects = [o for o in objects if o.mesh.primitive == "TRIANGLES"]
     order = sorted(range(len(objects)), key=lambda k: objects[k].name in moving)
@@ -121,7 +124,7 @@ def gather(
     owners: list[I32] = []
     items: list[I32] = []
     names: dict[str, int] = {}
-    dropped = Dropped()
+    dropped = DroppedFaces()
     offset, first_moving = 0, 0
     for number in order:
         item = objects[number]
@@ -134,7 +137,7 @@ def gather(
         points.append(wide[:, :3])
         for group in mesh.groups:
             faces = group.indices.astype(np.int32).reshape(-1, 3)
-            faces = faces[_sound(wide[:, :3], faces, item.name, dropped)]
+            faces = faces[_find_valid(wide[:, :3], faces, item.name, dropped)]
             index = names.setdefault(group.material, len(names))
             triangles.append(faces + np.int32(offset))
             owners.append(np.full(len(faces), index, np.int32))
@@ -149,11 +152,11 @@ def gather(
         return RayGeometry(empty, none, zero, [], dropped=dropped)
     everywhere = np.concatenate(points)
     faces = np.concatenate(triangles)
-    centre = _centre(everywhere, faces) if centre is None else centre
+    centre = _choose_centre(everywhere, faces) if centre is None else centre
     with np.errstate(over="ignore"):
         vertices = (everywhere - centre).astype(np.float32)
     owner, item_of = np.concatenate(owners), np.concatenate(items)
-    repeated = _duplicates(vertices, faces) if len(faces) else np.zeros(0, bool)
+    repeated = _find_duplicates(vertices, faces) if len(faces) else np.zeros(0, bool)
     if repeated.any():
         at = int(np.argmax(repeated))
         dropped.counts["the same as another"] = int(repeated.sum())
@@ -165,9 +168,9 @@ def gather(
         np.ascontiguousarray(faces),
         owner,
         list(names),
-        _joined(parts, counts, "normal"),
-        _joined(parts, counts, "texCoord0"),
-        _joined(parts, counts, "tangent"),
+        _concatenate(parts, counts, "normal"),
+        _concatenate(parts, counts, "texCoord0"),
+        _concatenate(parts, counts, "tangent"),
         item_of,
         centre,
         len(faces) - first_moving,
@@ -175,9 +178,9 @@ def gather(
     )
 
 
-def precision(item: SceneObject) -> tuple[float, float]:
-    """How much float32 rounds the largest coordinate of an object, and the size of its smallest
-    triangle with an area (its longest side), object space."""
+def measure_precision(item: SceneObject) -> tuple[float, float]:
+    """Return the float32 rounding of an object's largest coordinate, and the longest side of its
+    smallest triangle with an area, object space."""
     if item.mesh.triangle_count == 0:
         return 0.0, 1.0
     points = item.mesh.positions[:, :3].astype(np.float64)
@@ -191,8 +194,8 @@ def precision(item: SceneObject) -> tuple[float, float]:
     return float(np.spacing(np.float32(largest))), float(sides.min())
 
 
-def _centre(points: F64, faces: I32) -> F64:
-    """Where the scene is moved from: zero for one that lies about the origin."""
+def _choose_centre(points: F64, faces: I32) -> F64:
+    """Return the origin for the scene: zero unless the scene is far from the world's origin."""
     if not len(faces):
         return np.zeros(3)
     used = points[np.unique(faces)]

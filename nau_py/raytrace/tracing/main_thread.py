@@ -1,4 +1,4 @@
-"""Work that only the main thread may do (OpenGL), asked for by the threads that trace."""
+"""Calls that only the main thread may make (OpenGL), requested by the threads that trace."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ Request = tuple[Future[Any], Callable[..., Any], tuple[Any, ...]]
 
 
 class MainThread:
-    """Runs functions on the thread that made it."""
+    """Runs functions on the thread that created it, on request of other threads."""
 
     def __init__(self) -> None:
         self._owner = threading.get_ident()
         self._requests: SimpleQueue[Request | None] = SimpleQueue()
-        """What is asked for; None where a tile has ended, so that waiting needs no clock."""
+        """Pending requests; None when a tile has ended, so that waiting needs no polling."""
 
     def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """What ``function`` returns or raises on the main thread; waits for it."""
+        """Call ``function`` on the main thread, and return its result or raise its exception."""
         if threading.get_ident() == self._owner:
             return function(*arguments)
         future: Future[Any] = Future()
         self._requests.put((future, function, arguments))
         return future.result()
 
-    def results(self, futures: list[Future[Any]]) -> Iterator[Any]:
-        """The results of ``futures`` in order, serving requests while they are computed."""
+    def iterate_results(self, futures: list[Future[Any]]) -> Iterator[Any]:
+        """Yield the results of ``futures`` in order, and serve requests while they are computed."""
         for future in futures:
             future.add_done_callback(self._wake)
         for awaited in futures:
@@ -38,8 +38,8 @@ class MainThread:
                     _serve(request)
             yield awaited.result()
 
-    def abandon(self, futures: list[Future[Any]]) -> None:
-        """Cancel ``futures``; those that run get no answer. Returns when they have ended."""
+    def cancel(self, futures: list[Future[Any]]) -> None:
+        """Cancel ``futures`` and the requests of those that run; return when they have ended."""
         for future in futures:
             future.add_done_callback(self._wake)
             future.cancel()
@@ -53,6 +53,7 @@ class MainThread:
 
 
 def _serve(request: Request) -> None:
+    """Run the function of a request and set its result or exception."""
     future, function, arguments = request
     try:
         future.set_result(function(*arguments))

@@ -1,4 +1,4 @@
-"""Ray programs: found, loaded when a project runs, and checked at every call."""
+"""Ray programs: found, loaded when a project runs, and their results checked at every call."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import hashlib
 import importlib.util
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -19,49 +19,55 @@ from nau_py.diagnostics.errors import NauError, ProgramError
 from nau_py.diagnostics.location import Location
 from nau_py.model.raytrace import BUILTIN, Program
 from nau_py.raytrace.kernels.core.tables import USER
+from nau_py.raytrace.programs.batch import CODES, FUNCTIONS
+from nau_py.raytrace.programs.source import stand_in, strip_decoration
 from nau_py.raytrace.tracing.arrays import F32, Mask
 
 
 @dataclass(frozen=True, slots=True)
 class BoundProgram:
-    """A program with the words that its errors need: project, pass, material, proc."""
+    """A loaded program. ``label``: project, pass, material and procedure, for messages."""
 
     function: Callable[..., Any] | None
     label: str
     location: Location
     file: str
     code: int = USER
-    """What kernels call the program by; USER: it is Python. A compiled one has no function."""
+    """Code of a compiled program, which has no function; USER for a program written in Python."""
 
     def call(self, argument: object) -> Any:
-        """Run the program. Raises :class:`~nau_py.ProgramError` for what it raises."""
+        """Run the program. Raises :class:`~nau_py.ProgramError` for any exception of it."""
         assert self.function is not None, f"{self.label} is compiled"
         try:
             return self.function(argument)
         except NauError:
             raise
         except Exception as bug:
-            where = self._blame(bug)
+            where = self._find_location(bug)
             message = f"{self.label} raised {type(bug).__name__}: {bug}"
             raise ProgramError(error("T010", where, message)) from bug
 
-    def _blame(self, bug: Exception) -> Location:
-        """The innermost line of the program's own file, or where the project names it."""
+    def _find_location(self, bug: Exception) -> Location:
+        """Return the innermost line of the program's own file, else its place in the project."""
         frames = traceback.extract_tb(bug.__traceback__)
         own = [f for f in frames if f.filename == self.file]
         if not own:
             return self.location
         return Location(self.file, own[-1].lineno or 0, (own[-1].colno or 0) + 1)
 
-    def _wrong(self, what: str) -> ProgramError:
+    def _result_error(self, what: str) -> ProgramError:
+        """Return the error for a program that returned ``what``."""
         code = getattr(self.function, "__code__", None)
         where = self.location
         if code is not None and code.co_filename == self.file:
             where = Location(self.file, code.co_firstlineno, 1)
         return ProgramError(error("T011", where, f"{self.label} returned {what}"))
 
-    def radiance(self, argument: object, count: int) -> F32:
-        """What the program returns, as RGBA (count, 4): colours get alpha 1."""
+    def compute_radiance(self, argument: object, count: int) -> F32:
+        """Run the program and return its result as RGBA float32 (count, 4); colours get alpha 1.
+
+        Raises :class:`~nau_py.ProgramError` for a result of another shape.
+        """
         value = self.call(argument)
         try:
             array = np.asarray(value)
@@ -69,11 +75,13 @@ class BoundProgram:
         except (ValueError, TypeError):
             array, numeric = np.zeros(0), False
         if not numeric:
-            raise self._wrong(f"{type(value).__name__}; numbers of shape ({count}, 3) are expected")
+            raise self._result_error(
+                f"{type(value).__name__}; numbers of shape ({count}, 3) are expected"
+            )
         if array.shape == (3,) or array.shape == (4,):
             array = np.broadcast_to(array, (count, len(array)))
         if array.shape not in ((count, 3), (count, 4)):
-            raise self._wrong(
+            raise self._result_error(
                 f"an array of shape {array.shape}; ({count}, 3) or ({count}, 4) is expected"
             )
         result = np.ones((count, 4), np.float32)
@@ -81,12 +89,15 @@ class BoundProgram:
             result[:, : array.shape[1]] = array
         return result
 
-    def accepts(self, argument: object, count: int) -> Mask:
-        """What an any-hit program returns: True accepts a hit, False ignores it."""
+    def decide_hits(self, argument: object, count: int) -> Mask:
+        """Run an any-hit program and return bool (count,): True accepts a hit, False ignores it.
+
+        Raises :class:`~nau_py.ProgramError` for a result of another shape or type.
+        """
         value = self.call(argument)
         array = np.asarray(value)
         if array.shape != (count,) or array.dtype != np.bool_:
-            raise self._wrong(
+            raise self._result_error(
                 f"an array of shape {array.shape} and type {array.dtype}; "
                 f"bool of shape ({count},) is expected (True accepts the hit)"
             )
@@ -95,12 +106,12 @@ class BoundProgram:
 
 @dataclass(frozen=True, slots=True)
 class TrustRule:
-    """Which folders programs may be loaded from."""
+    """Folders and files from which programs may be loaded."""
 
     folders: tuple[Path, ...]
     refuse_all: bool = False
     files: tuple[Path, ...] = ()
-    """Files that are trusted wherever they lie: those of plug-ins."""
+    """Files that are trusted in any folder: those of plug-ins."""
 
     def check(self, path: Path, where: Location, label: str) -> None:
         """Raise :class:`~nau_py.ProgramError` for a file outside the folders."""
@@ -118,16 +129,16 @@ class TrustRule:
 
 
 class ProgramLoader:
-    """Loads the programs of one pass: built-ins, and Python modules by path, each once.
+    """Loads the programs of one pass: built-ins, and Python modules, each file once.
 
-    ``provided``: built-ins by kind and name that somebody else makes.
+    ``provided``: further built-ins by kind and name, which the caller makes.
     """
 
     def __init__(
         self,
         folder: Path,
         trust: TrustRule,
-        provided: dict[tuple[str, str], Callable[..., Any]] | None = None,
+        provided: Mapping[tuple[str, str], Callable[..., Any]] | None = None,
     ) -> None:
         self._provided = provided or {}
         self._folder = folder
@@ -135,10 +146,7 @@ class ProgramLoader:
         self._modules: dict[Path, ModuleType] = {}
 
     def load(self, program: Program, label: str, kind: str) -> BoundProgram:
-        """The program behind a ``file`` and ``proc``. Raises :class:`ProgramError`."""
-        from nau_py.raytrace.programs.batch import CODES, FUNCTIONS
-        from nau_py.raytrace.programs.source import stand_in, strip_decoration
-
+        """Return the program of ``file`` and ``proc``. Raises :class:`~nau_py.ProgramError`."""
         proc = program.proc or ""
         if program.file == BUILTIN:
             codes, functions = CODES.get(kind, {}), FUNCTIONS.get(kind, {})
@@ -173,8 +181,8 @@ class ProgramLoader:
         module = importlib.util.module_from_spec(spec)
         sys.modules[name] = module
         try:
-            # not through the loader: its bytecode is told apart by size and whole seconds only,
-            # and would stand in the project's folder
+            # not through the loader: it writes bytecode into the project's folder, and compares it
+            # with the source by size and whole seconds only
             code = compile(path.read_bytes(), str(path), "exec", dont_inherit=True)
             exec(code, module.__dict__)
         except SyntaxError as bug:

@@ -1,4 +1,4 @@
-"""Random numbers keyed by (seed, pixel, sample, dimension), never by call order, for programs."""
+"""Random numbers for Python programs, keyed by (seed, pixel, sample, dimension), not call order."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from nau_py.raytrace.kernels.path.hit_arrays import fill_uniforms
 U32 = NDArray[np.uint32]
 
 
-def uniform(seed: int, pixel: U32, sample: U32, dimension: int) -> NDArray[np.float32]:
-    """Numbers in [0, 1), float32 (n,), for uint32 (n,) pixels and samples."""
+def sample_uniform(seed: int, pixel: U32, sample: U32, dimension: int) -> NDArray[np.float32]:
+    """Return numbers in [0, 1), float32 (n,), for uint32 (n,) pixels and samples."""
     result = np.empty(len(pixel), np.float32)
     fill_uniforms(seed & 0xFFFFFFFF, pixel, sample, dimension & 0xFFFFFFFF, result)
     return result

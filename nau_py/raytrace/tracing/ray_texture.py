@@ -1,4 +1,4 @@
-"""Textures as rays see them: level 0, with a sampler."""
+"""Textures that rays read: mipmap level 0, with a sampler."""
 
 from __future__ import annotations
 
@@ -44,13 +44,13 @@ class RayTexture:
 
     @cached_property
     def least_alpha(self) -> float:
-        """The least alpha that a sample can have, 0 to 1."""
+        """Least alpha that a sample can have, 0 to 1."""
         least = float(self.rgba[3::4].min()) / 255
         outside = "CLAMP_TO_BORDER" in (self.wrap_s, self.wrap_t)
         return min(least, float(self.border[3])) if outside else least
 
     def record(self, offset: int) -> NDArray[np.void]:
-        """The kernels' record of this texture, whose texels begin at ``offset``; shape (1,)."""
+        """Return the kernels' record of this texture, whose texels begin at ``offset``, (1,)."""
         made = np.zeros(1, TEXTURE)
         made["offset"], made["nearest"] = offset, self.nearest
         made["height"], made["width"] = self.texels.shape[:2]
@@ -60,7 +60,7 @@ class RayTexture:
         return made
 
     def sample(self, uv: F32) -> F32:
-        """RGBA float32 (n, 4) in 0..1 at texture coordinates (n, 2 or more)."""
+        """Return RGBA float32 (n, 4) in 0..1 at texture coordinates (n, 2 or more)."""
         result = np.empty((len(uv), 4), np.float32)
         coordinates = np.ascontiguousarray(uv, np.float32)
         sample_textures(self.record(0), self.rgba.ctypes.data, coordinates, result)

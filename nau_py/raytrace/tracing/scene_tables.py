@@ -16,11 +16,11 @@ from nau_py.raytrace.kernels.shading.bsdf import make_albedo_table
 from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.tracing.accelerator import Accelerator
 from nau_py.raytrace.tracing.arrays import F32
-from nau_py.raytrace.tracing.batches import RayLight, RayMaterial
 from nau_py.raytrace.tracing.geometry import RayGeometry
+from nau_py.raytrace.tracing.materials import TracedLight, TracedMaterial
 from nau_py.raytrace.tracing.program_loader import BoundProgram
 from nau_py.raytrace.tracing.ray_texture import RayTexture
-from nau_py.raytrace.tracing.simulated import Simulated
+from nau_py.raytrace.tracing.simulated import SimulatedEffects
 from nau_py.scene.mesh import F64
 
 ProgramTable = dict[tuple[str, str], list[BoundProgram | None]]
@@ -37,7 +37,7 @@ class TraceSettings:
     light_samples: int = 1
     occlusion_distance: float = np.inf
     clear_color: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
-    simulated: Simulated = field(default_factory=Simulated)
+    simulated: SimulatedEffects = field(default_factory=SimulatedEffects)
 
 
 class Tables:
@@ -58,9 +58,9 @@ class Scene:
 
     geometry: RayGeometry
     accelerator: Accelerator
-    materials: list[RayMaterial]
+    materials: list[TracedMaterial]
     programs: ProgramTable
-    lights: list[RayLight]
+    lights: list[TracedLight]
     variables: dict[str, NDArray[Any]]
     inputs: dict[str, NDArray[Any]]
     ray_types: list[str]
@@ -115,7 +115,7 @@ def _albedo() -> F64:
     return make_albedo_table(ALBEDO_SAMPLES)
 
 
-def _material(material: RayMaterial, store: TexelStore) -> NDArray[Any]:
+def _material(material: TracedMaterial, store: TexelStore) -> NDArray[Any]:
     made = np.zeros((), t.MATERIAL)
     c = material.colour
     made["diffuse"] = c("DIFFUSE")
@@ -129,7 +129,7 @@ def _material(material: RayMaterial, store: TexelStore) -> NDArray[Any]:
     return made
 
 
-def _light(light: RayLight, centre: F64, penumbra: bool) -> NDArray[Any]:
+def _light(light: TracedLight, centre: F64, penumbra: bool) -> NDArray[Any]:
     made = np.zeros((), t.LIGHT)
     v = light.values
     shape = t.SHAPES.index(str(v["SHAPE"][0]))
@@ -223,7 +223,7 @@ def make_tables(scene: Scene) -> Tables:
     made["max_depth"], made["shadow_type"] = scene.settings.max_depth, shadow
     made["light_samples"] = scene.settings.light_samples
     made["occlusion_distance"] = scene.settings.occlusion_distance
-    made["skipped"], made["caustics"] = simulated.bits, simulated.caustics
+    made["skipped"], made["caustics"] = simulated.skipped_bits, simulated.caustics
     made["negligible"] = simulated.negligible
     made["background"] = scene.settings.clear_color
     return Tables(

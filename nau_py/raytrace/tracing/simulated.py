@@ -1,4 +1,4 @@
-"""Which effects a launch simulates, in the engine's terms."""
+"""Effects that a launch simulates, as the kernels know them."""
 
 from __future__ import annotations
 
@@ -7,16 +7,20 @@ from dataclasses import dataclass
 from nau_py.raytrace.kernels.core.tables import KINDS
 
 NEGLIGIBLE = 1e-4
-"""Weight below which specular chains end: of what is up to 19 times as bright as white, less than
-half a step of an 8-bit display is left out."""
+"""Weight below which specular chains end: for surfaces up to 19 times as bright as white, the error
+is below half a step of an 8-bit display."""
 
 
 @dataclass(frozen=True, slots=True)
-class Simulated:
-    """``skipped``: kinds of rays that are not sent. ``opaque``: materials, by index, whose any-hit
-    programs accept every hit, so that none is asked. The rest: whether any-hit programs, several
-    points of a light, lamps met by way of mirrors or glass after a diffuse surface, re-radiation
-    and the lens count; ``negligible``: weight below which specular chains end."""
+class SimulatedEffects:
+    """Effects that a launch simulates.
+
+    ``skipped``: kinds of rays that are not sent. ``opaque``: materials, by index, whose any-hit
+    programs accept every hit, so that they need not run. The flags switch any-hit programs
+    (``transparency``), several points of a light (``penumbra``), lamps that a diffuse surface sees
+    through mirrors or glass (``caustics``), re-radiation (``fluorescence``) and the ``lens``.
+    ``negligible``: weight below which specular chains end.
+    """
 
     skipped: frozenset[str] = frozenset()
     opaque: frozenset[int] = frozenset()
@@ -28,6 +32,6 @@ class Simulated:
     negligible: float = NEGLIGIBLE
 
     @property
-    def bits(self) -> int:
-        """A bit for each skipped kind."""
+    def skipped_bits(self) -> int:
+        """One bit for each skipped kind of ray."""
         return sum(1 << code for code, name in enumerate(KINDS) if name in self.skipped)

@@ -1,9 +1,10 @@
-"""Effects on demand in a raytrace pass: what it calls for, and what the engine is told."""
+"""Effects on demand in a raytrace pass: those that its scene calls for, and their report."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import Any
 
 from nau_py.effects.analysis import ALPHA, called_for, opaque
 from nau_py.effects.decision import Decision, decide
@@ -20,14 +21,11 @@ from nau_py.model.raytrace import BUILTIN, Program, RayMaterial, RaytracePass
 from nau_py.passes.frame import FrameContext
 from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.programs.source import stand_in
-from nau_py.raytrace.tracing.simulated import NEGLIGIBLE, Simulated
+from nau_py.raytrace.tracing.counts import RayCounts
+from nau_py.raytrace.tracing.materials import TracedMaterial
+from nau_py.raytrace.tracing.simulated import NEGLIGIBLE, SimulatedEffects
 from nau_py.scene.camera import CameraState
 from nau_py.scene.lights import LightState
-
-if TYPE_CHECKING:
-    from nau_py.raytrace.tracing.batches import RayMaterial as TracedMaterial
-    from nau_py.raytrace.tracing.thread_tracer import RayCounts
-
 
 _COLOURS = (
     "DIFFUSE",
@@ -37,7 +35,8 @@ _COLOURS = (
 )
 
 
-def _program(project: Project, node: Program, built_in: bool = True) -> ProgramFacts:
+def _describe_program(project: Project, node: Program, built_in: bool = True) -> ProgramFacts:
+    """Return the facts of a program; the source of a project's program is read, not run."""
     proc = node.proc or ""
     if node.file == BUILTIN:
         return ProgramFacts(proc, node.location, proc if built_in else "")
@@ -46,7 +45,7 @@ def _program(project: Project, node: Program, built_in: bool = True) -> ProgramF
     return ProgramFacts(f"'{proc}' of {node.file}", node.location, "", sends)
 
 
-def pass_facts(
+def collect_facts(
     pass_: RaytracePass,
     project: Project,
     entries: Sequence[RayMaterial | None],
@@ -55,13 +54,13 @@ def pass_facts(
     camera: CameraState,
     max_depth: int,
 ) -> PassFacts:
-    """The facts of a pass in a frame. ``entries``: the programs of each of ``materials``."""
+    """Return the facts of a pass in a frame. ``entries``: the programs of each of ``materials``."""
     found = []
     for entry, material in zip(entries, materials):
         programs: dict[str, tuple[ProgramFacts, ...]] = {}
         for kind in (CLOSEST_HIT, ANY_HIT):
             nodes = [entry.program(t, kind) for t in pass_.ray_types] if entry else []
-            programs[kind] = tuple(_program(project, n) for n in nodes if n is not None)
+            programs[kind] = tuple(_describe_program(project, n) for n in nodes if n is not None)
         texture = material.textures.get(0)
         found.append(
             MaterialFacts(
@@ -84,14 +83,15 @@ def pass_facts(
         camera.name,
         own.location if own is not None else pass_.location,
         float(camera.values["APERTURE"]),
-        _program(project, generate) if generate is not None else None,
-        tuple(_program(project, n, built_in=False) for n in misses if n is not None),
+        _describe_program(project, generate) if generate is not None else None,
+        tuple(_describe_program(project, n, built_in=False) for n in misses if n is not None),
         tuple(pass_.ray_types),
         max_depth,
     )
 
 
 def _has_area(light: LightState) -> bool:
+    """Test if a light has an area, so that its shadows have penumbras."""
     shape = str(light.values["SHAPE"][0])
     if shape == "RECTANGLE":
         u, v = light.vector("EDGE_U"), light.vector("EDGE_V")
@@ -99,18 +99,38 @@ def _has_area(light: LightState) -> bool:
     return shape in ("DISC", "SPHERE") and float(light.values["RADIUS"][0]) > 0
 
 
-def decisions(facts: PassFacts, frame: FrameContext) -> tuple[list[Decision], Simulated]:
-    """What is simulated: the run's word, else the project's, else what the scene calls for."""
+@dataclass(frozen=True, slots=True)
+class EffectChoice:
+    """Effects of a pass in a frame: the facts of the scene, a decision for each effect, and the
+    settings that the kernels get."""
+
+    facts: PassFacts
+    decisions: list[Decision]
+    simulated: SimulatedEffects
+
+
+def choose_effects(
+    pass_: RaytracePass,
+    frame: FrameContext,
+    entries: Sequence[RayMaterial | None],
+    materials: Sequence[TracedMaterial],
+    lights: Sequence[LightState],
+    camera: CameraState,
+    max_depth: int,
+) -> EffectChoice:
+    """Choose the effects to simulate: by the run's option, else by the project, else those that the
+    scene calls for. ``entries``: nodes with the programs of each of ``materials``."""
+    facts = collect_facts(pass_, frame.project, entries, materials, lights, camera, max_depth)
     node = frame.project.file.effects
-    text, said = frame.session.options.effects, "--effects"
+    text, source = frame.session.options.effects, "--effects"
     if text is None:
-        text, said = (node.simulate if node else None) or AUTO, "<effects>"
+        text, source = (node.simulate if node else None) or AUTO, "<effects>"
     everything = text.strip() == ALL
     negligible = 0.0 if everything else NEGLIGIBLE
     chosen = wanted(text)
-    found = decide(chosen, called_for(facts), negligible, said)
+    found = decide(chosen, called_for(facts), negligible, source)
     left = set() if chosen is None else {d.effect for d in found if not d.simulated}
-    return found, Simulated(
+    simulated = SimulatedEffects(
         skipped=frozenset(d.kind for d in found if d.kind and d.effect in left),
         opaque=frozenset() if everything else opaque(facts),
         transparency="transparency" not in left,
@@ -120,22 +140,22 @@ def decisions(facts: PassFacts, frame: FrameContext) -> tuple[list[Decision], Si
         lens="depth_of_field" not in left,
         negligible=negligible,
     )
+    return EffectChoice(facts, found, simulated)
 
 
-def effect_data(
-    made: list[Decision],
-    facts: PassFacts,
-    told: Simulated,
-    counts: RayCounts,
-    stages: Mapping[str, float],
+def report_effects(
+    choice: EffectChoice, counts: RayCounts, stages: Mapping[str, float]
 ) -> tuple[dict[str, Any], ...]:
-    """The entries of the report. ``ms_saved`` of rays that were not sent is an estimate from what a
-    ray of this pass took on average."""
+    """Return the entries of the report (docs/report.md), one for each effect.
+
+    ``ms_saved`` of rays that were not sent is estimated from the mean time of a ray of this pass.
+    """
+    facts, opaque_count = choice.facts, len(choice.simulated.opaque)
     seen = {facts.materials[k].name for k in counts.viewed if k < len(facts.materials)}
     sampling = sum(stages.get(name, 0.0) for name in ("trace", "shade"))
     each = sampling / max(sum(counts.rays.values()), 1)
     found = []
-    for d in made:
+    for d in choice.decisions:
         kind = "continuation" if d.effect == "transparency" else d.kind
         saved = counts.skipped.get(d.kind, 0) if d.kind else 0
         data: dict[str, Any] = {
@@ -151,10 +171,10 @@ def effect_data(
         }
         if d.reason:
             data["reason"] = d.reason
-        if d.effect == "transparency" and d.simulated and told.opaque:
+        if d.effect == "transparency" and d.simulated and opaque_count:
             asked = sum(1 for m in facts.materials if any(p.proc in ALPHA for p in m.any_hit))
             data["note"] = (
-                f"any-hit programs of {len(told.opaque)} of {asked} materials are not asked: "
+                f"any-hit programs of {opaque_count} of {asked} materials are not asked: "
                 "nothing of them is transparent (exact)"
             )
         found.append(data)

@@ -1,101 +1,28 @@
-"""What programs are given: batches of hits, of missed rays, and the launch itself.
+"""Batches of hits on one material: arguments of closest-hit and any-hit programs.
 
 Arrays are float32; the first axis is the batch. Positions and directions are in world space.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.model.attributes.color import COLOR
 from nau_py.raytrace.kernels.path import hit_arrays as kernel
 from nau_py.raytrace.tracing.arrays import F32, Mask
-from nau_py.raytrace.tracing.random import uniform
-from nau_py.raytrace.tracing.ray_texture import WHITE, RayTexture
-
-if TYPE_CHECKING:
-    from nau_py.raytrace.tracing.thread_tracer import Tracer
-
-I32 = NDArray[np.int32]
-
-
-@dataclass(frozen=True, slots=True)
-class RayMaterial:
-    """A material at a hit: colours (RGBA, or one number for SHININESS) and textures by unit."""
-
-    name: str
-    colours: dict[str, tuple[float, ...]]
-    textures: dict[int, RayTexture]
-    variables: dict[str, NDArray[Any]] = field(default_factory=dict)
-
-    def colour(self, name: str) -> tuple[float, ...]:
-        """The values of a COLOR attribute; its default where the material has none."""
-        found = self.colours.get(name)
-        return found if found is not None else tuple(float(v) for v in COLOR.default(name))
-
-
-@dataclass(frozen=True, slots=True)
-class RayLight:
-    """A light of the pass: its attribute values by Nau's names."""
-
-    name: str
-    values: dict[str, tuple[Any, ...]]
-
-    def vector(self, name: str) -> F32:
-        """The first three components of an attribute, float32 (3,)."""
-        return np.array(self.values[name][:3], np.float32)
-
-
-@dataclass(slots=True)
-class Rays:
-    """A batch of rays. ``pixel`` uint32 and ``sample`` uint32 (n,) key the random numbers.
-
-    ``origin`` is relative to the centre of the scene, which is zero unless it lies far off.
-    """
-
-    tracer: Tracer
-    origin: F32
-    direction: F32
-    pixel: NDArray[np.uint32]
-    sample: NDArray[np.uint32]
-    depth: int
-    ray_type: str
-
-    def __len__(self) -> int:
-        return len(self.origin)
-
-    @property
-    def lights(self) -> list[RayLight]:
-        return self.tracer.scene.lights
-
-    @property
-    def variables(self) -> dict[str, NDArray[Any]]:
-        """Values of the pass's global parameters, by name."""
-        return self.tracer.scene.variables
-
-    @property
-    def clear_color(self) -> F32:
-        """The clear colour of the render target, float32 (4,)."""
-        return self.tracer.scene.clear_color
-
-    def random(self, dimension: int) -> F32:
-        """Numbers in [0, 1), float32 (n,), that depend on pixel, sample, depth and dimension."""
-        return uniform(
-            self.tracer.scene.settings.seed, self.pixel, self.sample, dimension + 1024 * self.depth
-        )
+from nau_py.raytrace.tracing.materials import TracedLight, TracedMaterial
+from nau_py.raytrace.tracing.ray_batch import I32, Rays
+from nau_py.raytrace.tracing.ray_texture import WHITE
 
 
 class Hits:
     """A batch of hits on one material."""
 
     def __init__(
-        self, rays: Rays, triangle: I32, u: F32, v: F32, t: F32, material: RayMaterial
+        self, rays: Rays, triangle: I32, u: F32, v: F32, t: F32, material: TracedMaterial
     ) -> None:
         self.rays = rays
         self.triangle, self.u, self.v, self.t = triangle, u, v, t
@@ -116,7 +43,8 @@ class Hits:
         return self.rays.direction
 
     @property
-    def lights(self) -> list[RayLight]:
+    def lights(self) -> list[TracedLight]:
+        """Lights of the pass, by light index."""
         return self.rays.lights
 
     @property
@@ -160,8 +88,8 @@ class Hits:
         return result
 
     def attribute(self, name: str) -> F32:
-        """A vertex attribute (``normal``, ``uv``, ``tangent``), interpolated, (n, 4); zero where
-        the mesh has none."""
+        """Return a vertex attribute (``normal``, ``uv``, ``tangent``), interpolated, (n, 4); zero
+        where the mesh has none."""
         values: F32 | None = getattr(self._geometry, name)
         result = self._interpolate(values, 3)
         return np.hstack([result, np.zeros((len(self), 1), np.float32)])
@@ -176,7 +104,7 @@ class Hits:
 
     @cached_property
     def facing_normal(self) -> F32:
-        """Shading normals turned towards where the ray came from, (n, 3)."""
+        """Shading normals turned towards the origin of the ray, (n, 3)."""
         result = np.empty((len(self), 3), np.float32)
         kernel.orient_normals(self.normal, self.direction, result)
         return result
@@ -192,23 +120,25 @@ class Hits:
         return self._interpolate(self._geometry.tangent, 3)
 
     def color(self, name: str) -> F32:
-        """A colour of the material (DIFFUSE, SPECULAR, AMBIENT, EMISSION), float32 (3,)."""
+        """Return a colour of the material (DIFFUSE, SPECULAR, AMBIENT, EMISSION), float32 (3,)."""
         return np.array(self.material.colour(name)[:3], np.float32)
 
     @property
     def shininess(self) -> float:
+        """Exponent SHININESS of the material."""
         return float(self.material.colour("SHININESS")[0])
 
     def has_texture(self, unit: int = 0) -> bool:
+        """Test if the material has a texture in ``unit``."""
         return unit in self.material.textures
 
     def texture(self, unit: int = 0) -> F32:
-        """Texture values, RGBA (n, 4); white where the material has no such texture."""
+        """Return texture values, RGBA (n, 4); white if the material has no such texture."""
         found = self.material.textures.get(unit)
         return np.tile(WHITE, (len(self), 1)) if found is None else found.sample(self.uv)
 
     def random(self, dimension: int) -> F32:
-        """See :meth:`Rays.random`."""
+        """Return numbers in [0, 1); see :meth:`Rays.random`."""
         return self.rays.random(dimension)
 
     def trace(
@@ -220,11 +150,12 @@ class Hits:
         initial: float = 0.0,
         where: Mask | None = None,
     ) -> F32:
-        """Send rays of ``ray_type`` from the hits along ``direction`` (3,) or (n, 3).
+        """Trace rays of ``ray_type`` from the hits along ``direction`` (3,) or (n, 3).
 
-        Returns what they bring, RGBA (n, 4). ``kind`` is how the report counts them (default:
-        the ray type's name). Rays longer than MAX_DEPTH bring 0; a miss without a miss program
-        brings ``initial``. ``where``, bool (n,): only these hits send one, the others get 0.
+        Return their radiance, RGBA (n, 4). ``kind`` is the kind that the report counts them as
+        (default: the ray type's name). A ray deeper than MAX_DEPTH returns 0; a miss without a miss
+        program returns ``initial``. ``where``, bool (n,): only these hits send a ray, the others
+        get 0. Raises ValueError for an array of another shape.
         """
         result = np.zeros((len(self), 4), np.float32)
         if where is not None and np.shape(where) != (len(self),):
@@ -245,67 +176,6 @@ class Hits:
         tracer = self.rays.tracer
         rays = Rays(tracer, origin, unit, pixel, sample, self.depth + 1, ray_type)
         if len(chosen) == len(self):
-            return tracer.trace(rays, limit, kind, initial)
-        result[chosen] = tracer.trace(rays, limit, kind, initial)
+            return tracer.trace_batch(rays, limit, kind, initial)
+        result[chosen] = tracer.trace_batch(rays, limit, kind, initial)
         return result
-
-
-@dataclass(slots=True)
-class Launch:
-    """A batch of samples for a ray generation program.
-
-    ``x`` ``y``: pixel columns and rows, row 0 at the bottom; ``sample``: 0 … ``samples`` - 1.
-    """
-
-    tracer: Tracer
-    x: I32
-    y: I32
-    pixel: NDArray[np.uint32]
-    sample: NDArray[np.uint32]
-    samples: int
-    camera_rays: Callable[[F32, F32], tuple[F32, F32]]
-    """(x, y) on the image plane in pixels to origins and unit directions, float32 (n, 3)."""
-
-    def __len__(self) -> int:
-        return len(self.x)
-
-    @property
-    def variables(self) -> dict[str, NDArray[Any]]:
-        return self.tracer.scene.variables
-
-    @property
-    def ray_types(self) -> list[str]:
-        return self.tracer.scene.ray_types
-
-    def input(self, name: str) -> NDArray[Any]:
-        """The values of an input buffer at the pixels, (n, channels)."""
-        return np.asarray(self.tracer.scene.inputs[name][self.y, self.x])
-
-    def random(self, dimension: int) -> F32:
-        """Numbers in [0, 1), float32 (n,)."""
-        return uniform(self.tracer.scene.settings.seed, self.pixel, self.sample, dimension)
-
-    def trace(
-        self,
-        ray_type: str,
-        origin: F32,
-        direction: F32,
-        tmax: F32 | None = None,
-        kind: str | None = None,
-        initial: float = 0.0,
-    ) -> F32:
-        """Send primary rays; see :meth:`Hits.trace`. float32 (n, 3) arrays, unit directions."""
-        local = np.asarray(origin, np.float32)
-        centre = self.tracer.scene.geometry.centre
-        if centre.any():
-            local = (np.asarray(origin, np.float64) - centre).astype(np.float32)
-        rays = Rays(
-            self.tracer,
-            local,
-            np.asarray(direction, np.float32),
-            self.pixel,
-            self.sample,
-            1,
-            ray_type,
-        )
-        return self.tracer.trace(rays, tmax, kind or "primary", initial)

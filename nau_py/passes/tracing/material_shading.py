@@ -1,4 +1,4 @@
-"""The built-in program ``material``: hands hits to the GLSL program of their material."""
+"""The built-in program ``material``: shades hits with the GLSL program of their material."""
 
 from __future__ import annotations
 
@@ -6,39 +6,36 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from nau_py.raytrace.tracing.arrays import F32
-from nau_py.raytrace.tracing.batches import Hits
+from nau_py.raster.hits import HitShading
+from nau_py.raytrace.tracing.hit_batch import Hits
 from nau_py.raytrace.tracing.main_thread import MainThread
+from nau_py.scene.mesh import F32, SceneObject
 
 if TYPE_CHECKING:
     from nau_py.raster.semantics import DrawContext
     from nau_py.scene.mapping import PassMaterials
-    from nau_py.scene.mesh import SceneObject
 
 
 class MaterialShading:
-    """A closest-hit program; what it draws is drawn on the main thread, which owns OpenGL."""
+    """A closest-hit program that draws on the main thread, which owns OpenGL."""
 
     def __init__(
-        self, objects: list[SceneObject], materials: PassMaterials, service: MainThread
+        self, objects: list[SceneObject], materials: PassMaterials, main_thread: MainThread
     ) -> None:
-        from nau_py.raster.hits import HitShading
-
         self._objects = objects
         self._materials = materials
-        self._service = service
+        self._main_thread = main_thread
         self._shading = HitShading()
         self.context: DrawContext | None = None
-        """The frame's context; set before rays are traced."""
+        """Context of the frame; set before rays are traced."""
 
     def forget(self) -> None:
         """Make the programs again at the next hit, since their sources have changed."""
-        from nau_py.raster.hits import HitShading
-
         self._shading = HitShading()
 
     def __call__(self, hits: Hits) -> F32:
-        colours: Any = self._service.call(self._shade, hits)
+        """Return the colours of hits, RGBA float32 (n, 4)."""
+        colours: Any = self._main_thread.call(self._shade, hits)
         return np.asarray(colours, np.float32)
 
     def _shade(self, hits: Hits) -> F32:
