@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import nau_py.diagnostics.run_rules
 import nau_py.rules.accuracy
+import nau_py.rules.compiled_programs
 import nau_py.rules.dataflow
 import nau_py.rules.files
 import nau_py.rules.names
 import nau_py.rules.numerics
 import nau_py.rules.passes
 import nau_py.rules.plugins
+import nau_py.rules.ray_programs
 import nau_py.rules.raytrace
 import nau_py.rules.references
 import nau_py.rules.syntax

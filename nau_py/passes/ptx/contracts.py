@@ -11,10 +11,11 @@ from pathlib import Path
 from nau_py.diagnostics.diagnostic import Diagnostic, error, warning
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import GEOMETRY_KINDS, Program, RaytracePass
-from nau_py.passes.ptx.programs import Modules, find_function, used_programs
+from nau_py.passes.ptx.programs import Modules, find_function
 from nau_py.passes.ptx.variables import mentioned, value_bytes
 from nau_py.process.paths import resolve as resolve_path
 from nau_py.raytrace.programs.description import MISS
+from nau_py.raytrace.programs.used import used_programs
 from nau_py.raytrace.ptx.compiler.reader import Module, PtxError
 from nau_py.raytrace.ptx.compiler.uses import Uses, uses_of
 from nau_py.raytrace.ptx.optix.optix6 import declared, is_old
@@ -62,7 +63,7 @@ Used = tuple[Program, Module, Uses]
 
 def _used(folder: Path, pass_: RaytracePass, modules: Modules) -> Iterator[Used]:
     seen: set[tuple[Path, str]] = set()
-    for program in used_programs(pass_):
+    for program, *_ in used_programs(pass_):
         path = resolve_path(folder, program.file or "").best
         module, name = modules.get(path), program.proc or ""
         if not isinstance(module, Module) or (path, name) in seen:

@@ -11,6 +11,7 @@ from nau_py.diagnostics.errors import ProgramError
 from nau_py.model.raytrace import Program, RaytracePass
 from nau_py.process.paths import resolve as resolve_path
 from nau_py.raytrace.programs.source import COMPILED, plain_name
+from nau_py.raytrace.programs.used import used_programs
 from nau_py.raytrace.ptx.compiler.compile import CALLABLE, compile_all
 from nau_py.raytrace.ptx.compiler.reader import Function, Module, PtxError, read_ptx
 from nau_py.raytrace.ptx.optix.optix6 import Layout, calls, is_old
@@ -22,17 +23,6 @@ if TYPE_CHECKING:
 
 Modules = dict[Path, "Module | PtxError | OSError"]
 """By file; or why one cannot be read."""
-
-
-def used_programs(pass_: RaytracePass) -> Iterator[Program]:
-    """Every program that a pass can run."""
-    entry = pass_.rtEntryPoint
-    if entry is not None:
-        yield from (p for p in (entry.rayGen, entry.exception) if p is not None)
-    for material in pass_.materials:
-        for group in material.rayTypes:
-            yield from group.programs
-    yield from pass_.rtGeometryProgram
 
 
 def find_function(module: Module, name: str) -> Function | None:
@@ -52,7 +42,7 @@ def read_module(path: Path) -> Module:
 def modules_of(pass_: RaytracePass, folder: Path) -> Modules:
     """The modules of a pass by file, or why one cannot be read."""
     found: Modules = {}
-    for program in used_programs(pass_):
+    for program, *_ in used_programs(pass_):
         path = resolve_path(folder, program.file or "").best
         if path in found or path.suffix.lower() != COMPILED or not path.exists():
             continue
@@ -74,7 +64,7 @@ class Programs:
         self.label = f"project '{session.project.name}'"
         self.modules: dict[Path, Module] = {}
         self.natives: dict[Path, Native] = {}
-        for program in used_programs(pass_):
+        for program, *_ in used_programs(pass_):
             path = self._path(program)
             if path not in self.modules:
                 where, label = program.where("file"), self._label(program)
@@ -140,7 +130,7 @@ def module_faults(pass_: RaytracePass, modules: Modules, folder: Path) -> Iterat
     """What of a pass's modules cannot be read or compiled."""
     label = f"pass '{pass_.name}'"
     said: set[Path] = set()
-    for program in used_programs(pass_):
+    for program, *_ in used_programs(pass_):
         path = resolve_path(folder, program.file or "").best
         module = modules.get(path)
         where = program.where("file")

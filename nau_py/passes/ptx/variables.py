@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from nau_py.diagnostics.diagnostic import Diagnostic, error, listing, nearest, warning
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import Program, RaytracePass, RayVariable
-from nau_py.passes.ptx.programs import Modules, find_function, used_programs
+from nau_py.passes.ptx.programs import Modules, find_function
 from nau_py.process.paths import resolve as resolve_path
+from nau_py.raytrace.programs.used import used_programs
 from nau_py.raytrace.ptx.compiler.reader import Function, Module, PtxError
 from nau_py.raytrace.ptx.optix.optix6 import Declared, declared
 
@@ -63,7 +64,7 @@ def variable_faults(
     """Variables that programs read and nothing sets, or that have another size."""
     known = given(project, pass_)
     said: set[str] = set()
-    for program in used_programs(pass_):
+    for program, *_ in used_programs(pass_):
         module = modules.get(resolve_path(project.folder, program.file or "").best)
         if not isinstance(module, Module):
             continue
