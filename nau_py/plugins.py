@@ -6,7 +6,7 @@ group              name                         object
 nau_py.passes      any                          a module that registers pass classes
 nau_py.rules       any                          a module that registers rules
 nau_py.readers     the ending, as in ``.tri``   a function of a path, which returns objects
-                                                and materials (:mod:`nau_py.scene.build`)
+                                                and materials (:mod:`nau_py.scene.readers.registry`)
 nau_py.programs    the name behind ``plugin:``  a module of ray programs
 ================== ============================ ==========================================
 

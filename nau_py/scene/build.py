@@ -12,36 +12,15 @@ from nau_py.diagnostics.location import Location
 from nau_py.model.library import qualified
 from nau_py.model.linked import Project
 from nau_py.model.scene import BufferGeometry, Primitive, Scene, Terrain
-from nau_py.plugins import READERS, load_plugins
 from nau_py.process.paths import resolve
 from nau_py.scene import primitives
 from nau_py.scene.mesh import Group, Mesh, SceneObject, merge, pad4, transform_mesh
-from nau_py.scene.poses import PoseTrack
-from nau_py.scene.readers.assimp import load_assimp
+from nau_py.scene.readers.loading import list_suffixes, read_model
 from nau_py.scene.readers.model_error import ModelError
 from nau_py.scene.readers.model_material import PRIMITIVE_MATERIAL, ModelMaterial
-from nau_py.scene.readers.nbo import load_nbo
-from nau_py.scene.readers.obj import load_obj
-from nau_py.scene.readers.ogre import load_ogre
-from nau_py.scene.readers.patch import load_patch
 from nau_py.scene.readers.terrain import load_terrain
 from nau_py.scene.transforms import transform_of
 
-ASSIMP_SUFFIXES = [
-    ".3ds",
-    ".dae",
-    ".fbx",
-    ".blend",
-    ".ply",
-    ".lwo",
-    ".stl",
-    ".cob",
-    ".scn",
-    ".gltf",
-    ".glb",
-]
-SUFFIXES = (".obj", ".nbo", ".cbo", ".xml", ".patch", *ASSIMP_SUFFIXES)
-"""Model files that this version reads."""
 _MERGED_TYPES = ("OctreeUnified",)
 
 
@@ -53,8 +32,6 @@ class SceneBuilder:
         self.materials: list[ModelMaterial] = []
         self.new_materials: list[str] = []
         self.diagnostics: list[Diagnostic] = []
-        self.poses: dict[int, tuple[PoseTrack, float]] = {}
-        """Pose tracks of meshes by ``id``, and how long they take."""
         self._primitives: dict[str, Mesh] = {}
 
     def build(self, scene: Scene) -> list[SceneObject]:
@@ -152,8 +129,9 @@ class SceneBuilder:
         folder = resolve(Path(where.file).parent, name)
         objects: list[SceneObject] = []
         if folder.exists and folder.best.is_dir():
+            known = list_suffixes()
             for path in sorted(folder.best.iterdir()):
-                if path.suffix.lower() in (*SUFFIXES, *load_plugins(READERS)):
+                if path.suffix.lower() in known:
                     objects += self._read(path, where, swap)
         return objects
 
@@ -162,24 +140,8 @@ class SceneBuilder:
         return self._read(found.best, where, swap) if found.exists else []
 
     def _read(self, path: Path, where: Location, swap: bool) -> list[SceneObject]:
-        suffix = path.suffix.lower()
         try:
-            if suffix == ".obj":
-                mesh, materials = load_obj(path)
-                objects = [SceneObject(str(path), mesh)]
-            elif suffix in ASSIMP_SUFFIXES:
-                objects, materials = load_assimp(path, swap)
-            elif suffix in (".nbo", ".cbo"):
-                objects, materials = load_nbo(path)
-            elif suffix == ".patch":
-                objects, materials = [SceneObject(str(path), load_patch(path))], []
-            elif suffix == ".xml":
-                objects, materials = self._ogre(path), []
-            elif suffix in load_plugins(READERS):
-                objects, materials = load_plugins(READERS)[suffix](path)
-            else:
-                known = ", ".join([*SUFFIXES, *load_plugins(READERS)])
-                raise ModelError(f"its format '{suffix}' is not supported (supported: {known})")
+            objects, materials = read_model(path, swap)
         except ModelError as problem:
             line = f":{problem.line}" if problem.line else ""
             self.diagnostics.append(
@@ -192,13 +154,6 @@ class SceneBuilder:
         self.new_materials += [g.material for o in objects for g in o.mesh.groups]
         for item in objects:
             item.mesh = self._valid(item.mesh, path, where)
-        return objects
-
-    def _ogre(self, path: Path) -> list[SceneObject]:
-        objects, animation = load_ogre(path)
-        if animation is not None:
-            for index, track in animation.tracks.items():
-                self.poses[id(objects[index].mesh)] = (track, animation.length)
         return objects
 
     def _existing_textures(self, material: ModelMaterial, path: Path, where: Location) -> None:

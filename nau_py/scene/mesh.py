@@ -9,6 +9,8 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from nau_py.scene.poses import PoseTrack
+
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
 U32 = NDArray[np.uint32]
@@ -39,6 +41,8 @@ class Mesh:
     """Whether geometry shaders see each triangle's neighbours."""
     version: int = 0
     """Grows when positions change: animated meshes only."""
+    poses: PoseTrack | None = None
+    """Pose animation, which a copy of the mesh does not have."""
 
     @property
     def positions(self) -> F32:

@@ -5,33 +5,31 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-
-from nau_py.scene.mesh import F32, F64
+from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, slots=True)
 class PoseTrack:
-    """Of one object: ``offsets`` float32 (poses, vertices, 3), object space; ``times`` float64
-    (keys,), seconds; ``influences`` float64 (keys, poses)."""
+    """Poses of one mesh over time.
 
-    offsets: F32
-    times: F64
-    influences: F64
+    ``offsets`` float32 (poses, vertices, 3), object space; ``times`` float64 (keys,), seconds;
+    ``influences`` float64 (keys, poses); ``length`` of the animation, seconds.
+    """
 
-    def offset(self, time: float) -> F32:
-        """The sum of offsets at ``time``, (vertices, 3): linear between keys; none before the first
-        key and after the last, as in Nau."""
+    offsets: NDArray[np.float32]
+    times: NDArray[np.float64]
+    influences: NDArray[np.float64]
+    length: float
+
+    def offset(self, time: float) -> NDArray[np.float32]:
+        """Sum the weighted offsets at ``time``, float32 (vertices, 3).
+
+        The weights are linear between keys. As in Nau the sum is 0 before the first key and after
+        the last.
+        """
         after = int(np.searchsorted(self.times, time, side="left"))
         if after == 0 or after == len(self.times):
             return np.zeros(self.offsets.shape[1:], np.float32)
         part = (time - self.times[after - 1]) / (self.times[after] - self.times[after - 1])
         weights = (1 - part) * self.influences[after - 1] + part * self.influences[after]
         return np.asarray(np.tensordot(weights.astype(np.float32), self.offsets, 1), np.float32)
-
-
-@dataclass(frozen=True, slots=True)
-class PoseAnimation:
-    """Tracks by the index of the object in its file, and how long they take, seconds."""
-
-    length: float
-    tracks: dict[int, PoseTrack]

@@ -39,7 +39,6 @@ class World:
             if node.name:
                 self.scenes.setdefault(node.name, []).extend(builder.build(node))
                 self._nodes.setdefault(node.name, node)
-        self._poses = builder.poses
         self._reference: dict[int, F32] = {}
         assets = project.assets
         self.events = EventSystem(
@@ -149,12 +148,11 @@ class World:
             return
         for item in self.scenes[scene]:
             mesh = item.mesh
-            if id(mesh) not in self._poses:
+            if mesh.poses is None:
                 continue
-            track, length = self._poses[id(mesh)]
             start = self._reference.setdefault(id(mesh), mesh.positions)
             moved = start.copy()
-            moved[:, :3] += track.offset(fraction * length)
+            moved[:, :3] += mesh.poses.offset(fraction * mesh.poses.length)
             mesh.attributes["position"] = moved
             mesh.version += 1
         self._changed(scene, [(o, o.matrix) for o in self.scenes[scene]])

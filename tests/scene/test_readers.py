@@ -8,10 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from nau_py.scene.mesh import Mesh, SceneObject
+from nau_py.scene.readers.loading import read_model
 from nau_py.scene.readers.model_error import ModelError
 from nau_py.scene.readers.nbo import load_nbo
 from nau_py.scene.readers.ogre import load_ogre
 from nau_py.scene.readers.patch import load_patch
+from nau_py.scene.readers.registry import READERS, Model, register_reader
 from nau_py.scene.readers.terrain import load_terrain
 from tests.conftest import Folder
 
@@ -91,14 +94,15 @@ OGRE = """\
 def test_ogre_strips_and_poses(tmp_path: Path) -> None:
     file = tmp_path / "a.mesh.xml"
     file.write_text(OGRE)
-    (found,), animation = load_ogre(file)
+    (found,), _ = load_ogre(file)
     assert found.mesh.groups[0].material == "A"
     assert found.mesh.groups[0].indices.tolist() == [[0, 1, 2], [1, 3, 2]]
     np.testing.assert_array_equal(found.mesh.attributes["texCoord0"][3], [1, 1, 0, 1])
-    assert animation is not None
-    assert animation.length == 2
+    poses = found.mesh.poses
+    assert poses is not None
+    assert poses.length == 2
     # a quarter of the way: a quarter of the offset, of vertex 2 alone
-    moved = animation.tracks[0].offset(0.5)
+    moved = poses.offset(0.5)
     np.testing.assert_allclose(moved, [[0, 0, 0], [0, 0, 0], [0, 0, 1], [0, 0, 0]])
 
 
@@ -150,3 +154,21 @@ def test_terrain(folder: Folder) -> None:
     np.testing.assert_allclose(mesh.attributes["normal"][5, :3], slope, atol=1e-6)
     np.testing.assert_allclose(mesh.attributes["normal"][4, :3], [0, 1, 0])  # at the border
     assert mesh.triangle_count == 3 * 2 * 2
+
+
+def test_built_in_readers_and_others_register_by_the_same_call(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(READERS, ".dots", READERS[".obj"])
+    del READERS[".dots"]  # restored, that is removed again, after the test
+
+    @register_reader(".dots", ".obj")
+    def read_dots(path: Path) -> Model:
+        return [SceneObject(path.stem, Mesh({"position": np.zeros((2, 4), np.float32)}, []))], []
+
+    (found,), _ = read_model(tmp_path / "two.DOTS", swap_yz=True)
+    assert (found.name, found.mesh.vertex_count) == ("two", 2)
+    with pytest.raises(ModelError, match="cannot be read"):
+        read_model(tmp_path / "no.obj", swap_yz=False)  # the built-in reader stays
+    with pytest.raises(ModelError, match=r"'\.x' is not supported \(supported: \.obj, \.nbo, "):
+        read_model(tmp_path / "no.x", swap_yz=False)

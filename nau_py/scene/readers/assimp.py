@@ -12,6 +12,7 @@ from nau_py.process.paths import resolve
 from nau_py.scene.mesh import F32, F64, Group, Mesh, SceneObject, pad4
 from nau_py.scene.readers.model_error import ModelError
 from nau_py.scene.readers.model_material import ModelMaterial
+from nau_py.scene.readers.registry import Model
 
 _POST_PROCESS = (
     assimp_py.Process_CalcTangentSpace
@@ -37,8 +38,8 @@ _UNITS = {
 }
 
 
-def load_assimp(path: Path, swap_yz: bool) -> tuple[list[SceneObject], list[ModelMaterial]]:
-    """The objects of a model file, with node transforms, and its materials.
+def load_assimp(path: Path, swap_yz: bool) -> Model:
+    """Load the objects of a model file, with node transforms, and its materials.
 
     Raises :class:`~nau_py.scene.readers.model_error.ModelError`.
     """

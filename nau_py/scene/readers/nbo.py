@@ -11,6 +11,7 @@ from nau_py.process.paths import resolve
 from nau_py.scene.mesh import F32, F64, Group, Mesh, SceneObject
 from nau_py.scene.readers.model_error import ModelError
 from nau_py.scene.readers.model_material import ModelMaterial
+from nau_py.scene.readers.registry import Model
 
 NO_TEXTURE = "<no texture>"
 TEXTURE_UNITS = 8
@@ -59,8 +60,8 @@ class _Reader:
         return values[: len(values) // 3 * 3].reshape(-1, 3)
 
 
-def load_nbo(path: Path) -> tuple[list[SceneObject], list[ModelMaterial]]:
-    """The objects of an NBO file and its materials.
+def load_nbo(path: Path) -> Model:
+    """Load the objects of an NBO file and its materials.
 
     Raises :class:`~nau_py.scene.readers.model_error.ModelError`.
     """

@@ -8,11 +8,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.scene.mesh import F32, U32, Group, Mesh, pad4, triangle_tangents
+from nau_py.scene.mesh import F32, U32, Group, Mesh, SceneObject, pad4, triangle_tangents
 from nau_py.scene.readers.model_error import ModelError
 from nau_py.scene.readers.model_material import OBJ_MATERIAL, ModelMaterial
 from nau_py.scene.readers.mtl import load_mtl, read_lines
 from nau_py.scene.readers.obj_faces import I64, Counts, Triangles, read_faces
+from nau_py.scene.readers.registry import Model
 from nau_py.scene.smooth import smooth_normals
 
 
@@ -81,8 +82,17 @@ def _scan(lines: list[bytes]) -> _Source:
     return source
 
 
+def read_obj(path: Path) -> Model:
+    """Read an OBJ file and its material libraries: one object, named after the file.
+
+    Raises :class:`~nau_py.scene.readers.model_error.ModelError`.
+    """
+    mesh, materials = load_obj(path)
+    return [SceneObject(str(path), mesh)], materials
+
+
 def load_obj(path: Path) -> tuple[Mesh, list[ModelMaterial]]:
-    """The mesh of an OBJ file and the materials of its MTL files.
+    """Load the mesh of an OBJ file and the materials of its MTL files.
 
     Groups are ordered by Nau's ``<group>-<material>`` keys in byte order and joined by material.
     Raises :class:`~nau_py.scene.readers.model_error.ModelError`.

@@ -1,6 +1,6 @@
 """Ogre mesh XML (docs/format.md, 10.5): submeshes, shared geometry, poses and their animation.
 
-Skeletons are read past: Nau keeps them, but moves nothing by them.
+Skeletons are ignored: Nau keeps them, but moves nothing by them.
 """
 
 from __future__ import annotations
@@ -13,8 +13,9 @@ import numpy as np
 from lxml import etree
 
 from nau_py.scene.mesh import F32, U32, Group, Mesh, SceneObject
-from nau_py.scene.poses import PoseAnimation, PoseTrack
+from nau_py.scene.poses import PoseTrack
 from nau_py.scene.readers.model_error import ModelError
+from nau_py.scene.readers.registry import Model
 
 OGRE_MATERIAL = "Default Ogre Material"
 _ATTRIBUTES = {
@@ -25,10 +26,10 @@ _ATTRIBUTES = {
 }
 
 
-def load_ogre(path: Path) -> tuple[list[SceneObject], PoseAnimation | None]:
-    """The objects of a mesh file, one a submesh with its own geometry, and its pose animation.
+def load_ogre(path: Path) -> Model:
+    """Load the objects of a mesh file: one for each submesh with its own geometry.
 
-    Every attribute has w = 1, as Nau reads it. Raises
+    The meshes carry their pose animation. Every attribute has w = 1, as Nau reads it. Raises
     :class:`~nau_py.scene.readers.model_error.ModelError`.
     """
     parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
@@ -65,7 +66,8 @@ def load_ogre(path: Path) -> tuple[list[SceneObject], PoseAnimation | None]:
                 raise ModelError(
                     f"a face has vertex {int(group.indices.max())} of {item.mesh.vertex_count}"
                 )
-    return objects, _poses(root, objects)
+    _add_poses(root, objects)
+    return objects, []
 
 
 def _line(node: Any) -> int:
@@ -125,8 +127,11 @@ def _faces(submesh: Any) -> U32:
     return np.stack([v[k], v[k + 1 + odd], v[k + 2 - odd]], axis=1)
 
 
-def _poses(root: Any, objects: list[SceneObject]) -> PoseAnimation | None:
-    """The first animation, as Nau makes it active. Pose numbers count within a submesh."""
+def _add_poses(root: Any, objects: list[SceneObject]) -> None:
+    """Give the meshes their tracks of the first animation, which Nau makes the active one.
+
+    Pose numbers count within a submesh.
+    """
     offsets: list[list[F32]] = [[] for _ in objects]
     for pose in root.iterfind("poses/pose"):
         target = int(_number(pose, "index")) if pose.get("target") == "submesh" else 0
@@ -140,8 +145,8 @@ def _poses(root: Any, objects: list[SceneObject]) -> PoseAnimation | None:
         offsets[target].append(moved)
     animation = root.find("animations/animation")
     if animation is None or not any(offsets):
-        return None
-    tracks: dict[int, PoseTrack] = {}
+        return
+    length = _number(animation, "length")
     for track in animation.iterfind("tracks/track"):
         target = int(_number(track, "index"))
         if not 0 <= target < len(objects) or not offsets[target]:
@@ -154,5 +159,5 @@ def _poses(root: Any, objects: list[SceneObject]) -> PoseAnimation | None:
                 if 0 <= pose < influences.shape[1]:
                     influences[row, pose] = _number(ref, "influence")
         times = np.array([_number(f, "time") for f in frames])
-        tracks[target] = PoseTrack(np.stack(offsets[target]), times, influences)
-    return PoseAnimation(_number(animation, "length"), tracks)
+        poses = PoseTrack(np.stack(offsets[target]), times, influences, length)
+        objects[target].mesh.poses = poses

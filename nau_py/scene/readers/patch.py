@@ -7,14 +7,23 @@ from pathlib import Path
 
 import numpy as np
 
-from nau_py.scene.mesh import Group, Mesh, pad4
+from nau_py.scene.mesh import Group, Mesh, SceneObject, pad4
 from nau_py.scene.readers.model_error import ModelError
+from nau_py.scene.readers.registry import Model
 
 PATCH_MATERIAL = "__nauDefault"
 
 
+def read_patch(path: Path) -> Model:
+    """Read a patch file: one object, named after the file, without materials.
+
+    Raises :class:`~nau_py.scene.readers.model_error.ModelError`.
+    """
+    return [SceneObject(str(path), load_patch(path))], []
+
+
 def load_patch(path: Path) -> Mesh:
-    """The control points; groups have (patches, points a patch) indices.
+    """Load the control points; groups have (patches, points a patch) indices.
 
     Raises :class:`~nau_py.scene.readers.model_error.ModelError`.
     """
