@@ -41,7 +41,7 @@ from nau_py.raytrace.tracing.geometry import RayGeometry, gather_triangles
 from nau_py.raytrace.tracing.launch import LaunchSettings, RayGeneration, RayLaunch
 from nau_py.raytrace.tracing.materials import TracedLight, TracedMaterial
 from nau_py.raytrace.tracing.program_loader import BoundProgram
-from nau_py.raytrace.tracing.scene_tables import Scene, TexelStore, TraceSettings
+from nau_py.raytrace.tracing.scene_tables import TexelStore, TracedScene, TraceSettings
 from nau_py.scene import primitives
 from nau_py.scene.camera import CameraState
 from nau_py.scene.mesh import SceneObject
@@ -130,7 +130,7 @@ def work(
     shade = bound(user_shade) if user else bound(None, codes.LAMBERT)
     miss = bound(user_miss) if user else bound(None, codes.BACKGROUND)
     lit = bound(user_lit) if user else bound(None, codes.UNOCCLUDED)
-    scene = Scene(
+    scene = TracedScene(
         geometry,
         Accelerator(geometry),
         [TracedMaterial(name, {}, {}) for name in geometry.materials],

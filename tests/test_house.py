@@ -20,9 +20,9 @@ STRICT: dict[str, set[str]] = {
 }
 """Room to the part of the foundation that it may import."""
 REPEATED_CLASSES = {
-    "Child", "CostRun", "Estimate", "Group", "Kind", "Launch", "Layout", "Link",
-    "Program", "Programs", "RayMaterial", "Resources", "Scene", "Session", "Step", "Style",
-    "Texture", "Triangles", "_Reader",
+    "Child", "CostRun", "Group", "Kind", "Layout", "Link",
+    "Program", "Programs", "Resources", "Scene", "Session", "Step", "Style",
+    "Texture", "_Reader",
 }  # fmt: skip
 """Class names that are used twice until they are renamed."""
 ARROWS = {

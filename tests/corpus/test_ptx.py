@@ -165,7 +165,7 @@ def test_shadows_of_the_deferred_project(tmp_path: Path) -> None:
     lit = positions[:, 3] > 0
     light = np.array([-0.4, 0.5, 1.0], np.float32)
     origin = (positions[lit, :3] - geometry.centre + 1e-4 * light).astype(np.float32)
-    wanted = ~accelerator.occluded(origin, np.broadcast_to(light, origin.shape))
+    wanted = ~accelerator.find_occluded(origin, np.broadcast_to(light, origin.shape))
     renderer.close()
     assert 0.1 < wanted.mean() < 0.9
     assert (found[~lit] == 1).all()

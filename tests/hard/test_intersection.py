@@ -74,7 +74,7 @@ def test_grazing(cosine: float) -> None:
 
     origin, unit = np.empty((2, len(u), 3), np.float32)
     spawn_rays(position, normal, bound, direction, origin, unit)
-    assert not Accelerator(plane).occluded(origin, unit).any()
+    assert not Accelerator(plane).find_occluded(origin, unit).any()
 
 
 def test_watertight_offset() -> None:

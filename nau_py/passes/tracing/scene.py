@@ -15,7 +15,7 @@ from nau_py.passes.tracing.state import TracingState
 from nau_py.passes.tracing.textures import RayInputs
 from nau_py.raster.semantics import resolve
 from nau_py.raytrace.tracing.materials import TracedLight, TracedMaterial
-from nau_py.raytrace.tracing.scene_tables import Scene, TraceSettings
+from nau_py.raytrace.tracing.scene_tables import TracedScene, TraceSettings
 from nau_py.scene.material import RenderMaterial
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class FrameScene:
     """Scene of a frame with the state that it was made of, and the effects that it simulates."""
 
     state: TracingState
-    scene: Scene
+    scene: TracedScene
     effects: EffectChoice
 
 
@@ -96,7 +96,7 @@ def build_scene(context: RayPassContext, inputs: RayInputs) -> FrameScene:
     nodes = [state.find_programs(name) for name in state.geometry.materials]
     depth = context.parameters.max_depth
     effects = choose_effects(pass_, frame, nodes, materials, lights, view.camera, depth)
-    scene = Scene(
+    scene = TracedScene(
         state.geometry,
         state.accelerator,
         materials,

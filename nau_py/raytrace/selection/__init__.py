@@ -1,7 +1,7 @@
 """Selection: the mask decides which pixels are traced, and with how many samples.
 
-A mask is an image of weights, 0 to 1. It takes three steps, each a module, to turn what a project
-says into samples:
+A mask is an image of weights, 0 to 1. Three steps, one module each, turn the selectors of a project
+into samples:
 
 1. *Selectors to weights* (``weights.py``). The selectors of a mask pass (materials, regions, a
    distance, shadow borders …) are evaluated on the position and material that each pixel shows.

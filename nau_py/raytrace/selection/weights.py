@@ -49,6 +49,7 @@ class VisibleSurfaces:
 
     @property
     def shape(self) -> tuple[int, int]:
+        """Height and width in pixels."""
         height, width = self.item.shape
         return int(height), int(width)
 
@@ -99,6 +100,7 @@ def _match_materials(
 
 
 def _is_between(selector: PropertySelector, colours: dict[str, tuple[float, ...]]) -> bool:
+    """Test if the greatest component of a colour is between the bounds."""
     parts = colours.get(selector.name or "")
     if parts is None:
         return False
@@ -115,6 +117,7 @@ def _pixel_centres(surfaces: VisibleSurfaces) -> tuple[F64, F64]:
 
 
 def _evaluate_region(selector: RegionSelector, surfaces: VisibleSurfaces) -> F64:
+    """Return 1 inside a rectangle, falling linearly to 0 over ``edge`` pixels about its border."""
     height, width = surfaces.shape
     x, y = _pixel_centres(surfaces)
     left = (selector.x or 0.0) * width
@@ -136,6 +139,7 @@ def _interpolate_falloff(value: F64, full: float, end: float, floor: float) -> F
 
 
 def _evaluate_distance(selector: DistanceSelector, surfaces: VisibleSurfaces) -> F64:
+    """Return weights that fall with the distance from the camera, world units."""
     d = np.sqrt(((surfaces.position.astype(np.float64) - surfaces.eye) ** 2).sum(axis=-1))
     d = np.where(surfaces.item < 0, np.inf, d)
     near = selector.near or 0.0
@@ -144,6 +148,7 @@ def _evaluate_distance(selector: DistanceSelector, surfaces: VisibleSurfaces) ->
 
 
 def _evaluate_gaze(selector: GazeSelector, surfaces: VisibleSurfaces) -> F64:
+    """Return weights that fall with the distance from a point of the image, in its heights."""
     height, width = surfaces.shape
     x, y = _pixel_centres(surfaces)
     px = (0.5 if selector.x is None else selector.x) * width

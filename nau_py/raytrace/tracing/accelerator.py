@@ -56,7 +56,7 @@ _FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
 
 
 @lru_cache(maxsize=1)
-def _library() -> ctypes.CDLL:
+def _load_library() -> ctypes.CDLL:
     """Load Embree and make its symbols known to compiled kernels."""
     package = Path(embreex.__file__).parent
     found = [*sorted((package.parent / "embreex.libs").glob("libembree*"))]
@@ -73,22 +73,22 @@ def _library() -> ctypes.CDLL:
 
 def load_embree() -> None:
     """Make Embree's symbols known to compiled code."""
-    _library()
+    _load_library()
 
 
 @lru_cache(maxsize=1)
-def _device() -> int:
-    return int(_library().rtcNewDevice(None))
+def _open_device() -> int:
+    return int(_load_library().rtcNewDevice(None))
 
 
 def embree_version() -> str:
     """Return the version of the Embree library inside embreex's wheel."""
-    number = int(_library().rtcGetDeviceProperty(_device(), _VERSION_PROPERTY))
+    number = int(_load_library().rtcGetDeviceProperty(_open_device(), _VERSION_PROPERTY))
     return f"{number // 10000}.{number // 100 % 100}.{number % 100}"
 
 
 @dataclass(slots=True)
-class Triangles:
+class TriangleGeometry:
     """Positions float32 (n, 3) or (n, 4) and triangles uint32 (m, 3); Embree shares both arrays."""
 
     positions: F32
@@ -96,9 +96,11 @@ class Triangles:
 
     @property
     def count(self) -> int:
+        """Number of triangles."""
         return len(self.triangles)
 
-    def make(self, rtc: ctypes.CDLL, device: int) -> int:
+    def create(self, rtc: ctypes.CDLL, device: int) -> int:
+        """Return a new RTCGeometry."""
         mesh = int(rtc.rtcNewGeometry(device, _TRIANGLES))
         for slot, kind, data in (
             (_VERTEX, _FLOAT3, self.positions),
@@ -110,7 +112,7 @@ class Triangles:
 
 
 @dataclass(slots=True)
-class Custom:
+class CustomGeometry:
     """Primitives described by functions: addresses of an ``RTCBoundsFunction``, of an
     ``RTCIntersectFunctionN``, and of their user data."""
 
@@ -119,7 +121,8 @@ class Custom:
     intersect: int
     user: int
 
-    def make(self, rtc: ctypes.CDLL, device: int) -> int:
+    def create(self, rtc: ctypes.CDLL, device: int) -> int:
+        """Return a new RTCGeometry."""
         made = int(rtc.rtcNewGeometry(device, _USER))
         rtc.rtcSetGeometryUserPrimitiveCount(made, self.count)
         rtc.rtcSetGeometryUserData(made, self.user)  # the bounds function gets nothing else
@@ -128,22 +131,22 @@ class Custom:
         return made
 
 
-Parts = Sequence[Triangles | Custom]
+Parts = Sequence[TriangleGeometry | CustomGeometry]
 
 
 @dataclass(eq=False)
-class _Shared:
+class _SharedArrays:
     """Arrays that an Embree scene shares; they live as long as the scene."""
 
     parts: Parts
 
 
-def _build(parts: Parts, flags: int) -> tuple[int, _Shared]:
-    rtc, device = _library(), _device()
+def _build_scene(parts: Parts, flags: int) -> tuple[int, _SharedArrays]:
+    rtc, device = _load_library(), _open_device()
     scene = rtc.rtcNewScene(device)
     rtc.rtcSetSceneFlags(scene, flags)
     for part in parts:
-        made = part.make(rtc, device)
+        made = part.create(rtc, device)
         rtc.rtcCommitGeometry(made)
         rtc.rtcAttachGeometry(scene, made)
         rtc.rtcReleaseGeometry(made)
@@ -151,7 +154,7 @@ def _build(parts: Parts, flags: int) -> tuple[int, _Shared]:
     if problem := rtc.rtcGetDeviceError(device):
         count = sum(part.count for part in parts)
         raise MemoryError(f"Embree could not build {count} primitives: error {problem}")
-    kept = _Shared(parts)
+    kept = _SharedArrays(parts)
     weakref.finalize(kept, rtc.rtcReleaseScene, scene)
     return int(scene), kept
 
@@ -159,7 +162,7 @@ def _build(parts: Parts, flags: int) -> tuple[int, _Shared]:
 def build_groups(parts: Parts) -> tuple[int, object]:
     """Build an Embree scene with one geometry for each part. Return its handle, and the object to
     keep while the handle is used. Raises MemoryError if Embree fails."""
-    return _build(parts, _ROBUST | _FILTER)
+    return _build_scene(parts, _ROBUST | _FILTER)
 
 
 @dataclass(slots=True)
@@ -182,7 +185,7 @@ class Accelerator:
 
     def __init__(self, geometry: RayGeometry) -> None:
         self.first_moving = geometry.first_moving
-        self._kept: dict[str, _Shared] = {}
+        self._kept: dict[str, _SharedArrays] = {}
         self.scene = self._build("scene", geometry, slice(0, geometry.first_moving))
         self.moving = 0
         self.rebuild_moving(geometry)
@@ -197,10 +200,12 @@ class Accelerator:
             return 0
         vertices = np.zeros((len(geometry.vertices) + 1, 3), np.float32)  # Embree reads 16 bytes
         vertices[:-1] = geometry.vertices
-        scene, self._kept[name] = _build([Triangles(vertices[:-1], triangles)], _ROBUST)
+        scene, self._kept[name] = _build_scene(
+            [TriangleGeometry(vertices[:-1], triangles)], _ROBUST
+        )
         return scene
 
-    def _record(self) -> NDArray[Any]:
+    def _make_record(self) -> NDArray[Any]:
         record = np.zeros(1, SCENE)
         record["standing"], record["moving"] = self.scene, self.moving
         record["first_moving"] = self.first_moving
@@ -213,13 +218,13 @@ class Accelerator:
         found = Intersections(np.empty(n, np.int32), *np.zeros((3, n), np.float32))
         limit = np.array([np.inf] if tmax is None else tmax, np.float32)
         o, d = np.ascontiguousarray(origin, "f4"), np.ascontiguousarray(direction, "f4")
-        intersect_rays(self._record(), o, d, limit, found.triangle, found.u, found.v, found.t)
+        intersect_rays(self._make_record(), o, d, limit, found.triangle, found.u, found.v, found.t)
         return found
 
-    def occluded(self, origin: F32, direction: F32, tmax: F32 | None = None) -> Mask:
+    def find_occluded(self, origin: F32, direction: F32, tmax: F32 | None = None) -> Mask:
         """Test if rays hit anything before ``tmax``, bool (n,)."""
         limit = np.array([np.inf] if tmax is None else tmax, np.float32)
         o, d = np.ascontiguousarray(origin, "f4"), np.ascontiguousarray(direction, "f4")
         found = np.zeros(len(o), bool)
-        find_occluded_rays(self._record(), o, d, limit, found)
+        find_occluded_rays(self._make_record(), o, d, limit, found)
         return found

@@ -18,7 +18,7 @@ from nau_py.raytrace.tracing.estimate import PixelEstimates
 from nau_py.raytrace.tracing.main_thread import MainThread
 from nau_py.raytrace.tracing.program_loader import BoundProgram
 from nau_py.raytrace.tracing.ray_batch import SampleBatch
-from nau_py.raytrace.tracing.scene_tables import Scene
+from nau_py.raytrace.tracing.scene_tables import TracedScene
 from nau_py.raytrace.tracing.thread_tracer import ThreadTracer, ThreadTracers
 from nau_py.scene.mesh import F32
 
@@ -57,7 +57,7 @@ class RayGeneration:
 class RayLaunch:
     """Launch state shared by all tiles."""
 
-    scene: Scene
+    scene: TracedScene
     generation: RayGeneration
     exception: BoundProgram | None
     settings: LaunchSettings

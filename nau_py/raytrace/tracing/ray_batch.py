@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from nau_py.raytrace.tracing.materials import TracedLight
 from nau_py.raytrace.tracing.random import sample_uniform
-from nau_py.raytrace.tracing.scene_tables import Scene
+from nau_py.raytrace.tracing.scene_tables import TracedScene
 from nau_py.scene.mesh import F32
 
 I32 = NDArray[np.int32]
@@ -23,7 +23,7 @@ I32 = NDArray[np.int32]
 class RaySender(Protocol):
     """The tracer of a thread, as batches need it to send rays on."""
 
-    scene: Scene
+    scene: TracedScene
 
     def trace_batch(self, rays: Rays, tmax: F32 | None, kind: str | None, initial: float) -> F32:
         """Trace a batch of rays and return their radiance, RGBA float32 (n, 4)."""

@@ -49,7 +49,7 @@ class RayTexture:
         outside = "CLAMP_TO_BORDER" in (self.wrap_s, self.wrap_t)
         return min(least, float(self.border[3])) if outside else least
 
-    def record(self, offset: int) -> NDArray[np.void]:
+    def make_record(self, offset: int) -> NDArray[np.void]:
         """Return the kernels' record of this texture, whose texels begin at ``offset``, (1,)."""
         made = np.zeros(1, TEXTURE)
         made["offset"], made["nearest"] = offset, self.nearest
@@ -63,5 +63,5 @@ class RayTexture:
         """Return RGBA float32 (n, 4) in 0..1 at texture coordinates (n, 2 or more)."""
         result = np.empty((len(uv), 4), np.float32)
         coordinates = np.ascontiguousarray(uv, np.float32)
-        sample_textures(self.record(0), self.rgba.ctypes.data, coordinates, result)
+        sample_textures(self.make_record(0), self.rgba.ctypes.data, coordinates, result)
         return result

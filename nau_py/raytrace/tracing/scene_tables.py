@@ -53,7 +53,7 @@ class Tables:
 
 
 @dataclass
-class Scene:
+class TracedScene:
     """Geometry, materials, programs and lights of a pass, in one frame."""
 
     geometry: RayGeometry
@@ -102,7 +102,7 @@ class TexelStore:
         """Records, and all texels."""
         if self._joined is None:
             offsets = np.cumsum([0, *(len(x.rgba) for x in self._kept)])
-            records = [x.record(int(o)) for x, o in zip(self._kept, offsets)]
+            records = [x.make_record(int(o)) for x, o in zip(self._kept, offsets)]
             self._joined = (
                 np.concatenate([np.zeros(0, t.TEXTURE), *records]),
                 np.concatenate([np.zeros(0, np.uint8), *(x.rgba for x in self._kept)]),
@@ -178,7 +178,7 @@ def _attribute(values: F32 | None) -> F32:
     return np.zeros((0, 4), np.float32) if values is None else np.ascontiguousarray(values)
 
 
-def make_tables(scene: Scene) -> Tables:
+def make_tables(scene: TracedScene) -> Tables:
     """Everything that the kernels read of ``scene``."""
     geometry, types = scene.geometry, scene.ray_types
     count = max(len(scene.materials), 1)

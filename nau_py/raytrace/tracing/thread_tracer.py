@@ -15,7 +15,7 @@ from nau_py.raytrace.kernels.path.integrator import trace_queue, trace_rays, tra
 from nau_py.raytrace.tracing.counts import RayCounts
 from nau_py.raytrace.tracing.deferred_programs import RECURSION_LIMIT, run_deferred
 from nau_py.raytrace.tracing.ray_batch import Rays
-from nau_py.raytrace.tracing.scene_tables import Scene
+from nau_py.raytrace.tracing.scene_tables import TracedScene
 from nau_py.raytrace.tracing.tile_memory import TileMemory
 from nau_py.scene.mesh import F32
 
@@ -25,7 +25,7 @@ _CODES = {name: code for code, name in enumerate(t.KINDS)}
 class ThreadTracer:
     """Traces the tiles of one thread, one after the other, and counts their cost."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: TracedScene) -> None:
         self.scene = scene
         self.shift = 0
         """Samples of the same pixel >> shift are traced together."""
@@ -171,7 +171,7 @@ class ThreadTracers:
     def __init__(self) -> None:
         self._local = threading.local()
 
-    def get(self, scene: Scene) -> ThreadTracer:
+    def get(self, scene: TracedScene) -> ThreadTracer:
         """Return the tracer of the calling thread."""
         found: ThreadTracer | None = getattr(self._local, "tracer", None)
         if found is None or found.scene is not scene:

@@ -11,7 +11,7 @@ from nau_py.raytrace.kernels.core import tables as t
 from nau_py.raytrace.kernels.intersect.any_hit import filter_address
 from nau_py.raytrace.kernels.intersect.embree import CONTEXT, RAY_FLOATS
 from nau_py.raytrace.kernels.intersect.ray_arrays import initialize_tile
-from nau_py.raytrace.tracing.scene_tables import Scene
+from nau_py.raytrace.tracing.scene_tables import TracedScene
 from nau_py.scene.mesh import F32
 
 MIN_QUEUE = 1024
@@ -39,7 +39,7 @@ class TileMemory:
     ``counters`` int64 (COUNTERS,) and ``viewed`` int32 (materials,) are written by kernels.
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: TracedScene) -> None:
         self.counters = np.zeros(t.COUNTERS, np.int64)
         self.viewed = np.zeros(max(len(scene.materials), 1), np.int32)
         self._lanes = np.zeros(1, _LANES)
@@ -75,7 +75,7 @@ class TileMemory:
         """Return a queue (or a slice of it) for later use."""
         self._queues.append(queue if queue.base is None else queue.base)
 
-    def _collect_addresses(self, scene: Scene) -> NDArray[Any]:
+    def _collect_addresses(self, scene: TracedScene) -> NDArray[Any]:
         tile, lanes = np.zeros(1, t.TILE), self._lanes.ctypes.data
         packet = -(-self._packet.ctypes.data // ALIGNMENT) * ALIGNMENT
         tile["packet"], tile["valid"] = packet, packet + 4 * RAY_FLOATS * t.LANES

@@ -26,7 +26,7 @@ from nau_py.raytrace.ptx.runtime.launch import (
     set_program,
 )
 from nau_py.raytrace.ptx.runtime.native import Native
-from nau_py.raytrace.tracing.accelerator import Custom, build_groups
+from nau_py.raytrace.tracing.accelerator import CustomGeometry, build_groups
 
 COUNT = 33
 X = np.arange(COUNT) / 16 - 1
@@ -191,7 +191,7 @@ def test_intersection_programs_report_kind_and_attributes(native: Native) -> Non
     frame = frame_of(block, hits[0])
     user = np.array([native.address("box"), frame.ctypes.data], np.uint64)
     places = (native.address("nau.bounds"), native.address("nau.user"))
-    handle, kept = build_groups([Custom(1, *places, user.ctypes.data)])
+    handle, kept = build_groups([CustomGeometry(1, *places, user.ctypes.data)])
     out, _ = _run(native, "__raygen__corners", handle, hits, "__miss__typed")
     left = X[1:] <= 0  # the first ray passes along the box's side
     np.testing.assert_array_equal(out[1:][left][:, 0], X[1:][left].astype(np.float32))

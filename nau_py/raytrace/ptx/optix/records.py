@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from nau_py.raytrace.kernels.geometry.cuda_texture import Image
 from nau_py.raytrace.ptx.runtime.frame import RECORD_HEADER
 from nau_py.raytrace.ptx.runtime.launch import record_table, set_program
-from nau_py.raytrace.tracing.accelerator import Triangles, build_groups
+from nau_py.raytrace.tracing.accelerator import TriangleGeometry, build_groups
 
 F32 = NDArray[np.float32]
 DATA = np.dtype(
@@ -64,7 +64,7 @@ class Scene:
         self.handle = 0
         self._kept: object = None
         if groups:
-            parts = [Triangles(g.attributes["position"], g.triangles) for g in groups]
+            parts = [TriangleGeometry(g.attributes["position"], g.triangles) for g in groups]
             self.handle, self._kept = build_groups(parts)
 
     def records(

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from nau_py.raytrace.ptx.runtime.launch import TYPES, Launch, bind_host, block_of, frame_of
 from nau_py.raytrace.ptx.runtime.native import Native
-from nau_py.raytrace.tracing.accelerator import Custom, Triangles, build_groups
+from nau_py.raytrace.tracing.accelerator import CustomGeometry, TriangleGeometry, build_groups
 
 TRIANGLES, CUSTOM = "triangles", "custom"
 _PROBED = 64
@@ -54,7 +54,7 @@ def build_scene(
     host = bind_host([native], [])
     working = launch.marks if launch.marks is not None else np.zeros(1, np.int64)
     working[0] = 0  # they run from here on
-    parts: list[Triangles | Custom] = []
+    parts: list[TriangleGeometry | CustomGeometry] = []
     kinds: list[str] = []
     kept: list[object] = [host, block, rays, mark]
     for (positions, indices), record in zip(shapes, records):
@@ -62,12 +62,12 @@ def build_scene(
         asked = _asked(block, record, intersect, bounds)
         kept.append(asked)
         if not intersect or _standard(native, asked, positions, triangles, bounds):
-            parts.append(Triangles(positions, triangles))
+            parts.append(TriangleGeometry(positions, triangles))
             kinds.append(TRIANGLES)
         else:
             user = asked.boxes.ctypes.data
             places = (native.address("nau.bounds"), native.address("nau.user"))
-            parts.append(Custom(len(triangles), *places, user))
+            parts.append(CustomGeometry(len(triangles), *places, user))
             kinds.append(CUSTOM)
     handle, structure = build_groups(parts) if parts else (0, None)
     working[0] = -1

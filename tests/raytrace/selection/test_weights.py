@@ -1,4 +1,4 @@
-"""Selectors: pure functions of what is seen, and the pass that draws it."""
+"""Weights of selectors (``selection/weights.py``), the mask pass and the overlay of the mask."""
 
 from __future__ import annotations
 
