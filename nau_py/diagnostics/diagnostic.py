@@ -71,36 +71,3 @@ def error(rule: str, location: Location, message: str, fixes: tuple[Fix, ...] = 
 
 def warning(rule: str, location: Location, message: str) -> Diagnostic:
     return Diagnostic(rule, Severity.WARNING, location, message)
-
-
-def near(name: str, known: list[str]) -> str | None:
-    """The known name that ``name`` may have been meant for."""
-    from difflib import get_close_matches
-
-    lower = {k.lower(): k for k in known}
-    found = get_close_matches(name.lower(), list(lower), n=1, cutoff=0.6)
-    return lower[found[0]] if found else None
-
-
-def nearest(name: str, known: list[str]) -> str:
-    """`` (did you mean 'x'?)``, or nothing where no name is near."""
-    found = near(name, known)
-    return f" (did you mean '{found}'?)" if found else ""
-
-
-def guess(
-    location: Location, name: str, known: list[str], part: Part = Part.VALUE
-) -> tuple[Fix, ...]:
-    """The fix that writes the nearest known name for ``name``; none where no name is near."""
-    found = near(name, known)
-    if found is None or found == name:
-        return ()
-    return (Fix(f"Change to '{found}'", (Change(location, part, name, found),)),)
-
-
-def listing(known: list[str] | tuple[str, ...], most: int = 12) -> str:
-    """``'a', 'b' … (3 more)``; ``none`` for an empty list."""
-    if not known:
-        return "none"
-    shown = ", ".join(f"'{k}'" for k in known[:most])
-    return shown + (f" … ({len(known) - most} more)" if len(known) > most else "")

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from nau_py.diagnostics.catalogue import RULES
 from nau_py.diagnostics.diagnostic import Diagnostic, Severity
@@ -77,8 +78,6 @@ def to_json(diagnostics: Iterable[Diagnostic]) -> str:
 
 def _uri(file: str) -> str:
     path = Path(shown_path(file))
-    from urllib.parse import quote
-
     return path.as_uri() if path.is_absolute() else quote(path.as_posix())
 
 

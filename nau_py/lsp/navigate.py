@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from nau_py.diagnostics.diagnostic import listing
 from nau_py.diagnostics.location import Location
+from nau_py.diagnostics.suggest import format_names
 from nau_py.lsp.links import link_at, uses_of_word
 from nau_py.lsp.session import Session
 from nau_py.lsp.symbols import Symbol, Symbols
@@ -87,9 +87,8 @@ def rename(session: Session, path: Path, offset: int, new: str) -> list[Found]:
         home = symbol.name[: len(symbol.name) - len(symbol.text)]
         taken = [s for s in symbols.definitions if (s.kind, s.name) == (symbol.kind, home + new)]
         if taken and new != symbol.text:
-            raise CannotRename(
-                f"there is a {symbol.kind} '{new}' already: {listing([str(taken[0].location)])}"
-            )
+            place = format_names([str(taken[0].location)])
+            raise CannotRename(f"there is a {symbol.kind} '{new}' already: {place}")
     return references(session, path, offset, declaration=True)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Annotated
 
-from nau_py.diagnostics.diagnostic import listing, nearest
+from nau_py.diagnostics.suggest import format_names, suggest_name
 from nau_py.model.node import Attr, Node
 
 EFFECTS: dict[str, str] = {
@@ -49,6 +49,7 @@ def wanted(text: str) -> frozenset[str] | None:
         if name not in EFFECTS:
             known = [*EFFECTS, AUTO, ALL, NONE]
             raise ValueError(
-                f"there is no effect '{name}'; there is {listing(known, 13)}{nearest(name, known)}"
+                f"there is no effect '{name}'; there is {format_names(known, 13)}"
+                f"{suggest_name(name, known)}"
             )
     return frozenset(names)

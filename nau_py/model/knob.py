@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from math import isfinite
 
-from nau_py.diagnostics.diagnostic import listing, nearest
+from nau_py.diagnostics.suggest import format_names, suggest_name
 from nau_py.model.accuracy import KNOBS
 from nau_py.model.linked import Project
 from nau_py.model.mask import MaskPass
@@ -39,7 +39,8 @@ class Subject:
         if self.words:
             if text not in self.words:
                 raise ValueError(
-                    f"'{text}' is none of {listing(self.words)}{nearest(text, list(self.words))}"
+                    f"'{text}' is none of {format_names(self.words)}"
+                    f"{suggest_name(text, list(self.words))}"
                 )
             return text
         try:
@@ -101,8 +102,8 @@ def subject(project: Project, passes: list[Pass], name: str) -> Subject:
             return _by_path(project, passes, name)
         known = list(KNOBS)
         raise LookupError(
-            f"there is no knob '{name}'; there is {listing(known)}, or PASS/ATTRIBUTE"
-            f"{nearest(name, known)}"
+            f"there is no knob '{name}'; there is {format_names(known)}, or PASS/ATTRIBUTE"
+            f"{suggest_name(name, known)}"
         )
     if name in ("scale", "filter"):
         return Subject(words=kind.words, low=kind.low, high=kind.high)
@@ -129,8 +130,8 @@ def _by_path(project: Project, passes: list[Pass], name: str) -> Subject:
     if not found:
         known = [p.name for p in passes if p.name]
         raise LookupError(
-            f"knob '{name}': there is no pass '{first}'; there is {listing(known)}"
-            f"{nearest(first, known)}"
+            f"knob '{name}': there is no pass '{first}'; there is {format_names(known)}"
+            f"{suggest_name(first, known)}"
         )
     if len(rest) == 1:
         wanted = [a for a in project.registry["PASS"] if not a.readonly]
@@ -138,7 +139,7 @@ def _by_path(project: Project, passes: list[Pass], name: str) -> Subject:
         if rest[0] not in names:
             raise LookupError(
                 f"knob '{name}': a pass has no attribute '{rest[0]}' of one component"
-                f"{nearest(rest[0], names)}"
+                f"{suggest_name(rest[0], names)}"
             )
         return _pass_attribute(project, tuple(found), rest[0])
     if len(rest) == 2:
@@ -148,7 +149,7 @@ def _by_path(project: Project, passes: list[Pass], name: str) -> Subject:
         numbers = sorted(set(_numbers(found[0])))
         raise LookupError(
             f"knob '{name}': pass '{first}' has no such number of a selector; it has "
-            f"{listing([f'{first}/{n}' for n in numbers])}"
+            f"{format_names([f'{first}/{n}' for n in numbers])}"
         )
     raise LookupError(f"knob '{name}': write PASS/ATTRIBUTE or PASS/SELECTOR/ATTRIBUTE")
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.diagnostics.diagnostic import Diagnostic, error, guess, listing, nearest
+from nau_py.diagnostics.diagnostic import Diagnostic, error
+from nau_py.diagnostics.suggest import format_names, suggest_fix, suggest_name
 from nau_py.graph.contract import Access
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
@@ -51,7 +52,7 @@ class MaskClass(PassClass):
                 "P003",
                 colors[0].where("internalFormat"),
                 f"{label} writes positions to '{colors[0].name}', of format "
-                f"'{colors[0].internalFormat or 'RGBA'}'; {listing(MASK_FORMATS)} holds them",
+                f"'{colors[0].internalFormat or 'RGBA'}'; {format_names(MASK_FORMATS)} holds them",
             )
         known = [a.name for a in project.registry["COLOR"]]
         for node in pass_.all_selectors():
@@ -59,9 +60,9 @@ class MaskClass(PassClass):
                 yield error(
                     "P003",
                     node.where("name"),
-                    f"{label}: materials have no '{node.name}'; there is {listing(known)}"
-                    f"{nearest(node.name, known)}",
-                    guess(node.where("name"), node.name, known),
+                    f"{label}: materials have no '{node.name}'; there is {format_names(known)}"
+                    f"{suggest_name(node.name, known)}",
+                    suggest_fix(node.where("name"), node.name, known),
                 )
 
     def access(self, project: Project, pass_: Pass) -> Access:

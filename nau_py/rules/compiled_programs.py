@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
-from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
+from nau_py.diagnostics.diagnostic import Diagnostic
+from nau_py.diagnostics.suggest import format_names, suggest_fix, suggest_name
 from nau_py.model.raytrace import RaytracePass
 from nau_py.process.paths import resolve
 from nau_py.raytrace.programs.source import launches_ptx, stand_in
@@ -137,8 +138,8 @@ def _exports(
             yield T004.at(
                 program.where("proc"),
                 f"{', '.join([label, *owner])}: '{file}' exports no '{proc}'; it exports "
-                f"{listing(known)}{nearest(proc, known)}",
-                fixes=guess(program.where("proc"), proc, known),
+                f"{format_names(known)}{suggest_name(proc, known)}",
+                fixes=suggest_fix(program.where("proc"), proc, known),
             )
     if launched:
         return

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from nau_py.diagnostics.catalogue import ERROR, NOTE, WARNING, rule
-from nau_py.diagnostics.diagnostic import Change, Diagnostic, Fix, Part, listing
+from nau_py.diagnostics.diagnostic import Change, Diagnostic, Fix, Part
 from nau_py.diagnostics.location import Location
+from nau_py.diagnostics.suggest import format_names
 from nau_py.model.schema import schema_of
 from nau_py.model.walk import nodes
 from nau_py.process.paths import resolve, similar
@@ -65,7 +66,7 @@ def _path(text: str, kind: str, where: Location, what: str) -> Iterator[Diagnost
     found = resolve(Path(where.file).parent, text)
     if not found.exists:
         near = similar(found)
-        hint = f" (did you mean {listing(near)}?)" if near else ""
+        hint = f" (did you mean {format_names(near)}?)" if near else ""
         message = f"{what}: the {kind} file '{text}' does not exist: {found.path}{hint}"
         fixes = tuple(
             Fix(f"Change to '{name}'", (Change(where, Part.VALUE, text, _renamed(text, name)),))

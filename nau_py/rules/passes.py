@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
-from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
+from nau_py.diagnostics.diagnostic import Diagnostic
+from nau_py.diagnostics.suggest import format_names, suggest_fix, suggest_name
 from nau_py.model.attributes import PARAMETERS
 from nau_py.model.linked import Project
 from nau_py.model.pass_classes import PASS_CLASSES
@@ -88,14 +89,14 @@ def check_pass_classes(context: LintContext) -> Iterator[Diagnostic]:
             yield P002.at(
                 pass_.where("class"),
                 f"pass '{pass_.name}': class '{name}' is not supported by this version; "
-                f"supported are {listing(known)}",
+                f"supported are {format_names(known)}",
             )
         else:
             yield P001.at(
                 pass_.where("class"),
                 f"pass '{pass_.name}': class '{name}' is unknown; there is "
-                f"{listing(known)}{nearest(name, known)}",
-                fixes=guess(pass_.where("class"), name, known),
+                f"{format_names(known)}{suggest_name(name, known)}",
+                fixes=suggest_fix(pass_.where("class"), name, known),
             )
 
 
@@ -121,10 +122,10 @@ def check_parameters(context: LintContext) -> Iterator[Diagnostic]:
                 continue  # unreadable, or an element that is no parameter: V001, S001
             owners = [n for n, m in PASS_CLASSES.items() if tag in registry.of(m, "PASS")]
             names = [p.name for p in PARAMETERS.get(type(pass_), ())]
-            has = f"has {listing(names)}" if names else "has no parameters of its own"
+            has = f"has {format_names(names)}" if names else "has no parameters of its own"
             message = (
-                f"pass '{pass_.name}': {tag} is a parameter of class {listing(owners)}; class "
-                f"'{pass_.pass_class}' {has}{nearest(tag, own.writable)}"
+                f"pass '{pass_.name}': {tag} is a parameter of class {format_names(owners)}; class "
+                f"'{pass_.pass_class}' {has}{suggest_name(tag, own.writable)}"
             )
             for element in elements:
                 yield P007.at(element.location, message)

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from nau_py.diagnostics.catalogue import ERROR, rule
-from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
+from nau_py.diagnostics.diagnostic import Diagnostic
+from nau_py.diagnostics.suggest import format_names, suggest_fix, suggest_name
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import BUILTIN, Program
 from nau_py.plugins import PREFIX, program_files
@@ -86,8 +87,8 @@ def _program(
         yield T004.at(
             program.where("proc"),
             f"{label}: '{path.name}' defines no function '{proc}'; it defines "
-            f"{listing(known)}{nearest(proc, known)}",
-            fixes=guess(program.where("proc"), proc, known),
+            f"{format_names(known)}{suggest_name(proc, known)}",
+            fixes=suggest_fix(program.where("proc"), proc, known),
         )
 
 
@@ -98,8 +99,8 @@ def _built_in(program: Program, kind: str, label: str) -> Iterator[Diagnostic]:
         yield T006.at(
             program.where("proc"),
             f"{label}: there is no built-in {kind} program '{proc}'; there is "
-            f"{listing(fitting)}{nearest(proc, fitting)}",
-            fixes=guess(program.where("proc"), proc, fitting),
+            f"{format_names(fitting)}{suggest_name(proc, fitting)}",
+            fixes=suggest_fix(program.where("proc"), proc, fitting),
         )
 
 
@@ -110,15 +111,15 @@ def _missing_file(project: Project, program: Program, label: str) -> Iterator[Di
         names = [PREFIX + name for name in program_files()]
         yield T003.at(
             where,
-            f"{label}: there is no plug-in '{file}'; there is {listing(names)}"
-            f"{nearest(file, names)}",
-            fixes=guess(where, file, names),
+            f"{label}: there is no plug-in '{file}'; there is {format_names(names)}"
+            f"{suggest_name(file, names)}",
+            fixes=suggest_fix(where, file, names),
         )
         return
     written = resolve(project.folder, file)
     if not written.exists:
         near = similar(written)
-        hint = f" (did you mean {listing(near)}?)" if near else ""
+        hint = f" (did you mean {format_names(near)}?)" if near else ""
         yield T003.at(where, f"{label}: program file '{file}' does not exist{hint}")
     elif not exports(written.best):  # else one finding lists its exports
         sibling = written.path.with_suffix(".py").name

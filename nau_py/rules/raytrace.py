@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
-from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
+from nau_py.diagnostics.diagnostic import Diagnostic
+from nau_py.diagnostics.suggest import format_names, suggest_fix, suggest_name
 from nau_py.graph.dependencies import find_dependencies
 from nau_py.graph.resource import Resource
 from nau_py.model.linked import Project
@@ -143,6 +144,6 @@ def completeness(context: LintContext) -> Iterator[Diagnostic]:
                     yield T007.at(
                         group.where("name"),
                         f"ray type '{group.name}' of pass '{pass_.name}' is not declared; there is "
-                        f"{listing(declared)}{nearest(group.name, declared)}",
-                        fixes=guess(group.where("name"), group.name, declared),
+                        f"{format_names(declared)}{suggest_name(group.name, declared)}",
+                        fixes=suggest_fix(group.where("name"), group.name, declared),
                     )

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nau_py.diagnostics.catalogue import ERROR, NOTE, WARNING, Rule, rule
-from nau_py.diagnostics.diagnostic import Diagnostic, guess, listing, nearest
+from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.diagnostics.location import Location
+from nau_py.diagnostics.suggest import format_names, suggest_fix, suggest_name
 from nau_py.model.attributes import OBJECT_TYPES
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
@@ -138,8 +139,8 @@ def _name(names: _Names, kind: str, value: str, where: Location, what: str) -> I
         yield RULES_BY_KIND[kind].at(
             where,
             f"{what} names the {kind} '{value}', which is undefined; there is "
-            f"{listing(known)}{nearest(value, known)}",
-            fixes=guess(where, value, known),
+            f"{format_names(known)}{suggest_name(value, known)}",
+            fixes=suggest_fix(where, value, known),
         )
 
 
@@ -179,8 +180,8 @@ def _attribute(
     yield RULES_BY_KIND[kind].at(
         where,
         f"{what} names the {kind} '{short}' of library '{home}', which is undefined; "
-        f"it has {listing(local)}{nearest(short, local)}",
-        fixes=guess(where, short, local),
+        f"it has {format_names(local)}{suggest_name(short, local)}",
+        fixes=suggest_fix(where, short, local),
     )
 
 
@@ -200,8 +201,8 @@ def components(context: LintContext) -> Iterator[Diagnostic]:
             yield R016.at(
                 node.where("component"),
                 f"{node.type} has no component '{node.component}'; it has "
-                f"{listing(known, 40)}{nearest(node.component, known)}",
-                fixes=guess(node.where("component"), node.component, known),
+                f"{format_names(known, 40)}{suggest_name(node.component, known)}",
+                fixes=suggest_fix(node.where("component"), node.component, known),
             )
         kind = CONTEXTS.get(node.type)
         object_name = node.context
@@ -212,8 +213,8 @@ def components(context: LintContext) -> Iterator[Diagnostic]:
             yield R017.at(
                 node.where("context"),
                 f"context '{object_name}' is no {kind} of the project; there is "
-                f"{listing(known)}{nearest(str(object_name), known)}",
-                fixes=guess(node.where("context"), str(object_name), known),
+                f"{format_names(known)}{suggest_name(str(object_name), known)}",
+                fixes=suggest_fix(node.where("context"), str(object_name), known),
             )
 
 
@@ -236,8 +237,8 @@ def patterns(context: LintContext) -> Iterator[Diagnostic]:
                     yield R018.at(
                         node.where(key),
                         f"'{pattern}' of pass '{pass_.name}' matches no material; there is "
-                        f"{listing(own, 30)}{nearest(pattern.rstrip('*'), own)}",
-                        fixes=guess(node.where(key), pattern.rstrip("*"), own),
+                        f"{format_names(own, 30)}{suggest_name(pattern.rstrip('*'), own)}",
+                        fixes=suggest_fix(node.where(key), pattern.rstrip("*"), own),
                     )
 
 

@@ -5,17 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
-from nau_py.diagnostics.diagnostic import (
-    Change,
-    Diagnostic,
-    Fix,
-    Part,
-    guess,
-    listing,
-    near,
-    nearest,
-)
+from nau_py.diagnostics.diagnostic import Change, Diagnostic, Fix, Part
 from nau_py.diagnostics.location import Location
+from nau_py.diagnostics.suggest import find_near, format_names, suggest_fix, suggest_name
 from nau_py.model.attribute import Attribute
 from nau_py.model.linked import Project
 from nau_py.model.node import Node, Setting
@@ -140,14 +132,16 @@ def unknown_things(context: LintContext) -> Iterator[Diagnostic]:
             if key in attributes:
                 continue  # its value did not convert: V001 says so
             strict = node.tag in _STRICT
-            known = f"; <{node.tag}> takes {listing(attributes)}{nearest(key, attributes)}"
+            known = (
+                f"; <{node.tag}> takes {format_names(attributes)}{suggest_name(key, attributes)}"
+            )
             message = f"attribute '{key}' (='{value}') of <{node.tag}> is unknown"
             where = node.where(key)
-            fixes = guess(where, key, attributes, Part.ATTRIBUTE)
+            fixes = suggest_fix(where, key, attributes, Part.ATTRIBUTE)
             if strict:
                 yield S002.at(where, message + known, fixes=fixes)
             else:
-                fixes += _remove(where, key, safe=near(key, attributes) is None)
+                fixes += _remove(where, key, safe=find_near(key, attributes) is None)
                 yield S003.at(where, message + " and ignored" + known, fixes=fixes)
         for tag, listed in node.unknown_children.items():
             for child in listed:
@@ -181,9 +175,9 @@ def _unknown_child(project: Project, node: Node, tag: str, child: Element) -> It
         return
     if isinstance(node, BufferGeometry) and tag in (*VERTEX_ATTRIBUTES, "index"):
         return
-    known = f"<{node.tag}> takes {listing(tags, 40)}{nearest(written, tags)}"
+    known = f"<{node.tag}> takes {format_names(tags, 40)}{suggest_name(written, tags)}"
     message = f"element <{written}> of <{node.tag}> is unknown; {known}"
-    fixes = guess(child.location, written, tags, Part.ELEMENT)
+    fixes = suggest_fix(child.location, written, tags, Part.ELEMENT)
     yield S001.at(child.location, message, fixes=fixes)
 
 
@@ -197,9 +191,9 @@ def _left_over(
         where = element.where(key)
         yield S003.at(where, message, fixes=_remove(where, key, safe=True))
     for child in element.children:
-        known = f"<{name}> takes {listing(inside)}{nearest(child.source_tag, inside)}"
+        known = f"<{name}> takes {format_names(inside)}{suggest_name(child.source_tag, inside)}"
         message = f"element <{child.source_tag}> of <{name}> is unknown; {known}"
-        fixes = guess(child.location, child.source_tag, inside, Part.ELEMENT)
+        fixes = suggest_fix(child.location, child.source_tag, inside, Part.ELEMENT)
         yield S001.at(child.location, message, fixes=fixes)
 
 
@@ -217,8 +211,8 @@ def attribute_values(context: LintContext) -> Iterator[Diagnostic]:
                 yield V005.at(
                     node.where(key),
                     f"attribute '{key}' of <{node.tag}> is '{value}'; it takes "
-                    f"{listing(known, 20)}{nearest(str(value), known)}",
-                    fixes=guess(node.where(key), str(value), known),
+                    f"{format_names(known, 20)}{suggest_name(str(value), known)}",
+                    fixes=suggest_fix(node.where(key), str(value), known),
                 )
             elif isinstance(value, str) and attribute.constant:
                 yield from _constant(
@@ -232,8 +226,8 @@ def _constant(project: Project, name: str, what: str, where: Location) -> Iterat
         yield V007.at(
             where,
             f"{what} is '{name}': no number, and no constant of that name; the project defines "
-            f"{listing(known)}{nearest(name, known)}",
-            fixes=guess(where, name, known),
+            f"{format_names(known)}{suggest_name(name, known)}",
+            fixes=suggest_fix(where, name, known),
         )
 
 
@@ -260,9 +254,9 @@ def _setting(
         known = list(attribute.values)
         yield V005.at(
             where,
-            f"{what} is '{setting.parts[0]}'; it takes {listing(known, 40)}"
-            f"{nearest(str(setting.parts[0]), known)}",
-            fixes=guess(where, str(setting.parts[0]), known),
+            f"{what} is '{setting.parts[0]}'; it takes {format_names(known, 40)}"
+            f"{suggest_name(str(setting.parts[0]), known)}",
+            fixes=suggest_fix(where, str(setting.parts[0]), known),
         )
     if not attribute.type.is_number:
         return

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.diagnostics.diagnostic import listing, nearest
+from nau_py.diagnostics.suggest import format_names, suggest_name
 from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Setting
 from nau_py.model.passes import Pass
@@ -63,7 +63,7 @@ class Attributes:
         """
         if type_ not in SETTABLE:
             raise ValueError(
-                f"attributes of {type_} cannot be set, those of {listing(SETTABLE)} can"
+                f"attributes of {type_} cannot be set, those of {format_names(SETTABLE)} can"
             )
         if type_ != "IMAGE_TEXTURE":
             self._known(type_, component)
@@ -101,7 +101,9 @@ class Attributes:
     def _known(self, type_: str, component: str) -> None:
         names = [a.name for a in self.project.registry[type_]]
         if component not in names:
-            raise ValueError(f"{type_} has no attribute '{component}'{nearest(component, names)}")
+            raise ValueError(
+                f"{type_} has no attribute '{component}'{suggest_name(component, names)}"
+            )
 
     def _write(self, node: Configured, name: str, parts: tuple[Scalar, ...]) -> None:
         self._changed.append((node, name, node.settings.get(name)))
@@ -122,13 +124,13 @@ class Attributes:
         passes = {f"{p.name}#{q.name}": q for p in self.project.pipelines for q in p.passes}
         found = passes.get(f"{pipeline}#{short}")
         if found is None:
-            raise ValueError(f"there is no pass '{name}'{nearest(name, list(passes))}")
+            raise ValueError(f"there is no pass '{name}'{suggest_name(name, list(passes))}")
         return found
 
     def _viewport(self, name: str) -> Configured:
         nodes = {v.name or "": v for v in self.project.assets.viewports}
         if name not in nodes:
-            raise ValueError(f"there is no viewport '{name}'{nearest(name, list(nodes))}")
+            raise ValueError(f"there is no viewport '{name}'{suggest_name(name, list(nodes))}")
         return nodes[name]
 
     def _material(self, frame: FrameContext, name: str) -> RenderMaterial:
@@ -150,9 +152,8 @@ class Attributes:
 def _layout(type_: str) -> tuple[np.dtype[Any], int]:
     types = basic_types(type_) if type_ in DataType.__members__ else []
     if not types:
-        raise ValueError(
-            f"'{type_}' is no type of a buffer's entry{nearest(type_, list(DataType.__members__))}"
-        )
+        near = suggest_name(type_, list(DataType.__members__))
+        raise ValueError(f"'{type_}' is no type of a buffer's entry{near}")
     return np.dtype(types[0]), len(types)
 
 

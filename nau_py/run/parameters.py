@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from nau_py.diagnostics.diagnostic import error, listing, nearest
+from nau_py.diagnostics.diagnostic import error
 from nau_py.diagnostics.errors import ProjectError
+from nau_py.diagnostics.suggest import format_names, suggest_name
 from nau_py.model.attribute import Attribute
 from nau_py.model.interface import InterfaceVariable
 from nau_py.model.linked import Project
@@ -46,7 +47,11 @@ def parse(project: Project, name: str, text: str) -> tuple[Parameter, list[float
     chosen = next((p for p in known if p.name == name), None)
     if chosen is None:
         names = [p.name for p in known]
-        there = f"there is {listing(names)}{nearest(name, names)}" if names else "it offers none"
+        there = (
+            f"there is {format_names(names)}{suggest_name(name, names)}"
+            if names
+            else "it offers none"
+        )
         raise ProjectError(
             error("R020", where, f"the project offers no parameter '{name}': {there}")
         )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from nau_py.diagnostics.diagnostic import error, listing, nearest
+from nau_py.diagnostics.diagnostic import error
 from nau_py.diagnostics.errors import ProjectError
+from nau_py.diagnostics.suggest import format_names, suggest_name
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
 
@@ -21,8 +22,8 @@ def choose_pipeline(project: Project, name: str | None) -> Pipeline:
             error(
                 "R013",
                 where,
-                f"project '{project.name}' has no {wanted}; it has {listing(known)}"
-                f"{nearest(name or '', known)}",
+                f"project '{project.name}' has no {wanted}; it has {format_names(known)}"
+                f"{suggest_name(name or '', known)}",
             )
         )
     return found

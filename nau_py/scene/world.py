@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from nau_py.diagnostics.diagnostic import Diagnostic, listing
+from nau_py.diagnostics.diagnostic import Diagnostic
+from nau_py.diagnostics.suggest import format_names
 from nau_py.model.linked import Project
 from nau_py.model.scene import Scene
 from nau_py.scene.build import SceneBuilder
@@ -99,7 +100,7 @@ class World:
         wide = np.asarray(matrix, np.float64)
         if not found:
             known = sorted({o.name for objects in self.scenes.values() for o in objects})
-            raise ValueError(f"no object is called '{name}'; there is {listing(known)}")
+            raise ValueError(f"no object is called '{name}'; there is {format_names(known)}")
         if wide.shape != (4, 4) or not np.isfinite(wide).all():
             raise ValueError(f"object '{name}': a finite matrix of shape (4, 4) is expected")
         for item in found:

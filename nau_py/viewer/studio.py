@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 from nau_py.accuracy.metrics import measure
 from nau_py.accuracy.picture import enlarged, mask_of, picture
 from nau_py.api import load
-from nau_py.diagnostics.diagnostic import Diagnostic, listing
+from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.diagnostics.errors import NauError
+from nau_py.diagnostics.suggest import format_names
 from nau_py.graph.resource import WINDOW
 from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Setting
@@ -274,7 +275,7 @@ class Studio:
     def _target(self, name: str) -> NDArray[Any]:
         found = self._named(self._frame)
         if name not in found:
-            raise KeyError(f"there is no target '{name}'; there is {listing(list(found))}")
+            raise KeyError(f"there is no target '{name}'; there is {format_names(list(found))}")
         return found[name]
 
     def target(self, name: str, channel: str, exposure: float, mask: bool) -> bytes:

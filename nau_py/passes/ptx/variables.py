@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from nau_py.diagnostics.diagnostic import Diagnostic, error, listing, nearest, warning
+from nau_py.diagnostics.diagnostic import Diagnostic, error, warning
+from nau_py.diagnostics.suggest import format_names, suggest_name
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import Program, RaytracePass, RayVariable
 from nau_py.passes.ptx.programs import Modules, find_function
@@ -93,7 +94,7 @@ def _variable(
             "T017",
             program.where("proc"),
             f"{label} reads the {variable.kind} '{name}', which nothing sets; there is "
-            f"{listing(sorted(known))}{nearest(name, sorted(known))}",
+            f"{format_names(sorted(known))}{suggest_name(name, sorted(known))}",
         )
         return
     size = known[name]

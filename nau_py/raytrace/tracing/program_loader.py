@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.diagnostics.diagnostic import error, listing, nearest
+from nau_py.diagnostics.diagnostic import error
 from nau_py.diagnostics.errors import NauError, ProgramError
 from nau_py.diagnostics.location import Location
+from nau_py.diagnostics.suggest import format_names, suggest_name
 from nau_py.model.raytrace import BUILTIN, Program
 from nau_py.raytrace.kernels.core.tables import USER
 from nau_py.raytrace.programs.batch import CODES, FUNCTIONS
@@ -153,8 +154,8 @@ class ProgramLoader:
             functions = functions | {n: f for (k, n), f in self._provided.items() if k == kind}
             known = [*codes, *functions]
             if proc not in known:
-                message = f"{label}: there is no built-in '{proc}'; there is {listing(known)}"
-                message += nearest(proc, known)
+                message = f"{label}: there is no built-in '{proc}'; there is {format_names(known)}"
+                message += suggest_name(proc, known)
                 raise ProgramError(error("T006", program.where("proc"), message))
             code = codes.get(proc, USER)
             return BoundProgram(functions.get(proc), label, program.location, "", code)
