@@ -27,7 +27,7 @@ REPEATED_CLASSES = {
 """Class names that are used twice until they are renamed."""
 ARROWS = {
     "diagnostics": set(),
-    "syntax": {"formats", "lsp"},
+    "syntax": set(),
     "process": {"model", "passes", "viewer", "raytrace/programs", "raytrace/ptx"},
     "model": set(),
     "formats": {"model"},

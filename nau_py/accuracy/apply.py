@@ -12,7 +12,8 @@ from nau_py.model.linked import Project
 from nau_py.model.node import Node
 from nau_py.model.passes import Pass
 from nau_py.model.pipeline import Pipeline
-from nau_py.syntax.edit import Document, Edit, insert_edits, setting_edits, value_edits
+from nau_py.syntax.document import Document, Edit
+from nau_py.syntax.edit import read_document
 
 
 def apply(project: Project, pipeline: Pipeline, setting: Candidate, own: Candidate) -> list[str]:
@@ -23,7 +24,7 @@ def apply(project: Project, pipeline: Pipeline, setting: Candidate, own: Candida
     """
     where = project.file.location
     path = Path(where.file)
-    document = Document.read(path)
+    document = read_document(path)
     edits: list[Edit] = []
     said: list[str] = []
     for name, value in setting.values:
@@ -44,9 +45,9 @@ def apply(project: Project, pipeline: Pipeline, setting: Candidate, own: Candida
 def _edits(document: Document, node: Node, attribute: str, value: Value) -> list[Edit]:
     """Give ``attribute`` of ``node`` the value."""
     if not isinstance(node, Pass):
-        return value_edits(document, document.offset(node.where(attribute)), str(value))
+        return document.set_value(document.offset(node.where(attribute)), str(value))
     written = node.settings.get(attribute)
     if written is None:
         begin = document.offset(node.location)
-        return insert_edits(document, begin, attribute, ["value"], [str(value)])
-    return setting_edits(document, document.offset(written.location), [("value",)], [str(value)])
+        return document.add_setting(begin, attribute, ["value"], [str(value)])
+    return document.set_components(document.offset(written.location), [("value",)], [str(value)])

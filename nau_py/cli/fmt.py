@@ -48,14 +48,15 @@ def fmt(
     if project is None:
         sys.stderr.write("Missing argument 'PROJECT'. Try 'nau-fmt --help'.\n")
         raise typer.Exit(USAGE)
-    from nau_py.formats.load import YAML_SUFFIXES, is_library, load_library, load_project
+    from nau_py.formats.load import is_library, load_library, load_project
     from nau_py.formats.write import format_node
+    from nau_py.syntax.language import is_yaml
 
     path = project
     library = is_library(path)
     loaded = load_library(path) if library else load_project(path)
     stop_if_unreadable(loaded)
-    own = Style.YAML if path.suffix.lower() in YAML_SUFFIXES else Style.XML
+    own = Style.YAML if is_yaml(path) else Style.XML
     node = loaded.libraries[-1] if library else loaded.file
     text = format_node(node, loaded.registry, (to or own).value)
     if check:

@@ -90,10 +90,10 @@ def _check(files: list[Path], models: bool) -> tuple[list[Diagnostic], dict[str,
 def _fix(found: list[Diagnostic]) -> int:
     """Apply the safe fixes; returns how many files changed. Says on stderr what was done."""
     from nau_py.diagnostics.reporters import shown_path
-    from nau_py.syntax.edit import fixed
+    from nau_py.syntax.edit import plan_fixes
 
     safe = [next((f for f in d.fixes if f.safe), None) for d in found]
-    files, made = fixed(f for f in safe if f is not None)
+    files, made = plan_fixes(f for f in safe if f is not None)
     written: set[str] = set()
     for path, (document, edits) in files.items():
         try:

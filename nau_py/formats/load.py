@@ -11,7 +11,7 @@ from nau_py.diagnostics.problem import Problem, ProblemKind
 from nau_py.formats.bind import Binder
 from nau_py.formats.settings import parse_setting
 from nau_py.formats.upgrade import upgrade
-from nau_py.formats.yaml import YamlReader, load_yaml
+from nau_py.formats.yaml import YamlReader
 from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import Registry
 from nau_py.model.library import MaterialLibrary
@@ -22,11 +22,12 @@ from nau_py.model.project import ProjectFile
 from nau_py.model.values import DataType
 from nau_py.process.paths import resolve
 from nau_py.syntax.element import Element
+from nau_py.syntax.language import YAML_SUFFIXES, is_yaml
 from nau_py.syntax.parse_error import ParseError
 from nau_py.syntax.xml import parse_xml
+from nau_py.syntax.yaml import parse_yaml
 
 BUILTIN_LIBRARY = Path(__file__).parent / "builtin" / "system.mlib"
-YAML_SUFFIXES = (".yaml", ".yml")
 N = TypeVar("N", bound=Node)
 _DEFAULT_KEYS = ("value", "x", "y", "z", "w", "r", "g", "b", "a")
 
@@ -70,8 +71,8 @@ class Reader:
         if text is None:
             return None
         try:
-            if path.suffix.lower() in YAML_SUFFIXES:
-                data = load_yaml(text, str(path))
+            if is_yaml(path):
+                data = parse_yaml(text, str(path))
                 self._yaml_user_attributes(data)
                 where = Location(str(path), 1, 1)
                 root = YamlReader(str(path), self.registry).node(tag, data, cls, where)
@@ -185,6 +186,6 @@ def load_library(path: Path | str, texts: Mapping[Path, str] | None = None) -> P
 
 def is_library(path: Path) -> bool:
     """Whether a file is a material library: by its ending, or by the root of a YAML file."""
-    if path.suffix.lower() in YAML_SUFFIXES:
+    if is_yaml(path):
         return path.name.lower().endswith(tuple(f".mlib{s}" for s in YAML_SUFFIXES))
     return path.suffix.lower() == ".mlib"

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from nau_py.formats.bind import unbind
-from nau_py.formats.yaml import format_yaml, to_yaml
+from nau_py.formats.yaml import to_yaml
 from nau_py.model.attributes import Registry
 from nau_py.model.library import MaterialLibrary
 from nau_py.model.node import Node
 from nau_py.syntax.xml import format_xml
+from nau_py.syntax.yaml import format_yaml
 
 
 def format_node(node: Node, registry: Registry, style: str) -> str:

@@ -6,12 +6,9 @@ is given by its first attribute alone (a name, mostly) is a plain string.
 
 from __future__ import annotations
 
-from io import StringIO
 from typing import Any
 
-from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
 from nau_py.diagnostics.location import Location
 from nau_py.formats.settings import keys_of
@@ -27,7 +24,7 @@ from nau_py.model.values import (
     to_scalar,
 )
 from nau_py.syntax.element import Element
-from nau_py.syntax.parse_error import ParseError
+from nau_py.syntax.yaml import key_location, value_location
 
 
 def _text(value: object) -> str:
@@ -44,21 +41,10 @@ class YamlReader:
         self.registry = registry
 
     def _at(self, container: object, key: object) -> Location:
-        try:
-            if isinstance(container, CommentedMap):
-                line, column = container.lc.value(key)
-            else:
-                line, column = container.lc.item(key)  # type: ignore[attr-defined]
-        except (AttributeError, KeyError, TypeError, IndexError):
-            return Location(self.file)
-        return Location(self.file, line + 1, column + 1)
+        return value_location(container, key, self.file)
 
     def _key_at(self, container: CommentedMap, key: object) -> Location:
-        try:
-            line, column = container.lc.key(key)
-        except (AttributeError, KeyError, TypeError):
-            return Location(self.file)
-        return Location(self.file, line + 1, column + 1)
+        return key_location(container, key, self.file)
 
     def node(self, tag: str, data: object, cls: type[Node], where: Location) -> Element:
         """Build the element ``tag`` of class ``cls`` that ``data`` describes."""
@@ -179,24 +165,8 @@ class YamlReader:
         return [element]
 
 
-def load_yaml(text: str, file: str) -> CommentedMap:
-    """Parse YAML (safe: no tags are executed). Raises :class:`ParseError` with a position."""
-    try:
-        data = YAML(typ="rt", pure=True).load(text)
-    except MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        where = Location(file, mark.line + 1, mark.column + 1) if mark else Location(file, 1, 1)
-        raise ParseError(where, str(error.problem or error.context)) from None
-    except (YAMLError, ValueError) as error:  # characters that YAML forbids, numbers beyond reason
-        first = str(error).splitlines()[0]
-        raise ParseError(Location(file, 1, 1), first) from None
-    if not isinstance(data, CommentedMap):
-        raise ParseError(Location(file, 1, 1), "a mapping is expected at the top")
-    return data
-
-
 def to_yaml(element: Element, cls: type[Node], registry: Registry) -> Any:
-    """Make data for :func:`format_yaml`: the reverse of :meth:`YamlReader.node`."""
+    """Make data for ``format_yaml``: the reverse of :meth:`YamlReader.node`."""
     schema = schema_of(cls)
     short = _shorten(element, schema, registry)
     if short is not None:
@@ -318,13 +288,3 @@ def _native(text: str, data_type: DataType) -> Scalar:
     except Unconvertible:
         return text
     return value if format_scalar(value) == text else text
-
-
-def format_yaml(data: Any) -> str:
-    """YAML text."""
-    yaml = YAML(typ="rt", pure=True)
-    yaml.indent(mapping=2, sequence=4, offset=2)
-    yaml.width = 100
-    stream = StringIO()
-    yaml.dump(data, stream)
-    return stream.getvalue()

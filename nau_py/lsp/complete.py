@@ -7,10 +7,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-import nau_py.syntax.yaml_cursor as in_yaml
 from nau_py.lsp.links import procedures
 from nau_py.lsp.place import (
-    ITEM,
     Entry,
     Inside,
     Listing,
@@ -35,8 +33,9 @@ from nau_py.model.references import CONTEXTS, known_names
 from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
 from nau_py.raytrace.programs.source import stand_in
 from nau_py.scene.names import default_material_names
-from nau_py.syntax import xml_cursor as in_xml
-from nau_py.syntax.xml_cursor import Cursor, Kind, Step
+from nau_py.syntax.cursor import ITEM, Cursor, CursorKind, Step
+from nau_py.syntax.xml_cursor import locate_xml_cursor
+from nau_py.syntax.yaml_cursor import locate_yaml_cursor
 
 ROOTS: dict[str, type[Node]] = {
     "project": ProjectFile,
@@ -76,8 +75,8 @@ class Grammar:
     names: Project
 
     def cursor(self, offset: int) -> Cursor:
-        find = in_yaml.cursor_at if self.yaml else in_xml.cursor_at
-        return find(self.text, offset)
+        locate = locate_yaml_cursor if self.yaml else locate_xml_cursor
+        return locate(self.text, offset)
 
     def place(self, steps: tuple[Step, ...]) -> Place | None:
         """The place inside the last of the steps; None where one is unknown."""
@@ -101,7 +100,7 @@ def complete(grammar: Grammar, offset: int) -> tuple[Cursor, list[Completion]]:
 
 def _proposals(grammar: Grammar, cursor: Cursor) -> Iterator[Completion]:
     registry = grammar.names.registry
-    if cursor.kind is Kind.END:
+    if cursor.kind is CursorKind.END:
         if cursor.path and not grammar.yaml:
             tag = cursor.path[-1].tag
             yield Completion(tag, tag, "element")
@@ -113,18 +112,18 @@ def _proposals(grammar: Grammar, cursor: Cursor) -> Iterator[Completion]:
     place = grammar.place(cursor.path)
     if place is None:
         return
-    if cursor.kind is Kind.CHILD:
+    if cursor.kind is CursorKind.CHILD:
         bare = not grammar.text[: cursor.begin].endswith("<")
         for entry in children(place, registry):
             text = f"<{entry.name}" if bare else entry.name
             yield Completion(entry.name, text, "element", _detail(entry), entry.doc)
-    elif cursor.kind is Kind.ATTRIBUTE:
+    elif cursor.kind is CursorKind.ATTRIBUTE:
         rest = grammar.text[cursor.end :].lstrip(" ")[:1]
         for entry in attributes(place, registry):
             if entry.name not in cursor.path[-1].attributes:
                 text = entry.name if rest == "=" else f'{entry.name}=""'
                 yield Completion(entry.name, text, "attribute", _detail(entry), entry.doc)
-    elif cursor.kind is Kind.KEY:
+    elif cursor.kind is CursorKind.KEY:
         yield from _keys(grammar, cursor, place)
     else:
         yield from _values(grammar, cursor, place)

@@ -7,7 +7,7 @@ from nau_py.lsp.place import Entry, Leaf, Place, attributes, children, enter
 from nau_py.lsp.symbols import Symbols
 from nau_py.model.attribute import Attribute
 from nau_py.model.values import format_scalar
-from nau_py.syntax.xml_cursor import Kind
+from nau_py.syntax.cursor import CursorKind
 
 
 def hover(grammar: Grammar, symbols: Symbols | None, offset: int) -> str | None:
@@ -34,13 +34,13 @@ def _word(grammar: Grammar, offset: int) -> str | None:
     cursor = grammar.cursor(offset)
     registry = grammar.names.registry
     word = grammar.text[cursor.begin : cursor.end].rstrip(":")
-    if cursor.kind is Kind.CHILD and not cursor.path:
+    if cursor.kind is CursorKind.CHILD and not cursor.path:
         return None
     place = grammar.place(cursor.path)
     if place is None:
         return None
-    name = cursor.name if cursor.kind is Kind.VALUE else word
-    if cursor.kind is not Kind.CHILD:
+    name = cursor.name if cursor.kind is CursorKind.VALUE else word
+    if cursor.kind is not CursorKind.CHILD:
         entry = next((e for e in attributes(place, registry) if e.name == name), None)
         if entry is not None:
             return _entry(entry, "attribute")

@@ -15,6 +15,7 @@ from nau_py.model.node import Attr, Node
 from nau_py.model.raytrace import EntryPoint, Program, RayMaterial, RayProgram
 from nau_py.model.schema import ChildField, SettingsField, schema_of
 from nau_py.model.values import DataType
+from nau_py.syntax.cursor import ITEM
 
 _OLD = {
     "optixEntryPoint": "rtEntryPoint",
@@ -30,8 +31,6 @@ _OLD = {
 }
 """Elements of the old dialect, and their present names."""
 _OLD_PROGRAMS: dict[type[Node], type[Node]] = {RayMaterial: RayProgram, EntryPoint: Program}
-ITEM = "-"
-"""The tag of a step into an item of a YAML list."""
 
 
 @dataclass(frozen=True, slots=True)

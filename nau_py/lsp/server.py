@@ -14,7 +14,7 @@ from pygls.workspace import TextDocument
 
 from nau_py.diagnostics.diagnostic import Diagnostic, Fix, Severity
 from nau_py.diagnostics.location import Location
-from nau_py.formats.load import YAML_SUFFIXES, is_library
+from nau_py.formats.load import is_library
 from nau_py.lsp.complete import complete
 from nau_py.lsp.hover import hover
 from nau_py.lsp.navigate import (
@@ -26,7 +26,9 @@ from nau_py.lsp.navigate import (
     rename,
 )
 from nau_py.lsp.session import Session
-from nau_py.syntax.edit import Document, Edit, change_edits
+from nau_py.syntax.document import Edit
+from nau_py.syntax.edit import make_document
+from nau_py.syntax.language import YAML_SUFFIXES
 from nau_py.version import __version__
 
 DELAY = 0.15
@@ -124,7 +126,7 @@ class NauServer(LanguageServer):
 
     def word(self, document: TextDocument, location: Location) -> lsp.Range:
         """The word that stands at a location."""
-        text = Document(document.source, False)
+        text = make_document(Path(), document.source)
         begin = text.offset(location)
         end = begin
         while end < len(text.text) and text.text[end] not in " \t\r\n\"'/>":
@@ -165,8 +167,7 @@ class NauServer(LanguageServer):
         made: dict[Path, list[Edit]] = {}
         for change in fix.changes:
             path = Path(change.location.file)
-            yaml = path.suffix.lower() in YAML_SUFFIXES
-            edits = change_edits(Document(self.session.text(path), yaml), change)
+            edits = make_document(path, self.session.text(path)).make_change(change)
             if not edits:
                 return {}
             made.setdefault(path, []).extend(edits)

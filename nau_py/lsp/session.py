@@ -7,13 +7,14 @@ from pathlib import Path
 
 from nau_py.api import lint
 from nau_py.diagnostics.diagnostic import Diagnostic
-from nau_py.formats.load import YAML_SUFFIXES, is_library, load_library, load_project
+from nau_py.formats.load import is_library, load_library, load_project
 from nau_py.lsp.complete import Grammar
 from nau_py.lsp.symbols import Symbols
 from nau_py.model.linked import Project
 from nau_py.process.paths import forget_folders
 from nau_py.run.reload import Stamp, stamp
 from nau_py.run.used_files import used_files
+from nau_py.syntax.language import YAML_SUFFIXES, is_yaml
 
 _SUFFIXES = (".xml", ".mlib", *YAML_SUFFIXES)
 _MOST = 2000
@@ -87,7 +88,7 @@ class Session:
         state that could be read."""
         text = self.text(path)
         library = is_library(path)
-        yaml = path.suffix.lower() in YAML_SUFFIXES
+        yaml = is_yaml(path)
         self.load(path)
         names = self._good.get(path) or self.load(path)
         if library:

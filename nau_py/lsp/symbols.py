@@ -9,7 +9,6 @@ from pathlib import Path
 
 from nau_py.diagnostics.diagnostic import Change, Part
 from nau_py.diagnostics.location import Location
-from nau_py.formats.load import YAML_SUFFIXES
 from nau_py.model.interface import InterfaceVariable
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
@@ -24,7 +23,8 @@ from nau_py.model.references import (
     qualified_reference,
 )
 from nau_py.model.schema import AttributeField, SettingsField, schema_of
-from nau_py.syntax.edit import Document, change_edits
+from nau_py.syntax.document import Document
+from nau_py.syntax.edit import make_document
 
 Span = tuple[str, int, int]
 """File, and the characters of its text from begin to end."""
@@ -63,8 +63,7 @@ class Symbols:
             text = self.project.sources.get(file)
             if text is None:
                 return None
-            yaml = Path(file).suffix.lower() in YAML_SUFFIXES
-            self._documents[file] = Document(text, yaml)
+            self._documents[file] = make_document(Path(file), text)
         return self._documents[file]
 
     def span(self, symbol: Symbol) -> Span | None:
@@ -73,7 +72,7 @@ class Symbols:
         if document is None or not symbol.text:
             return None
         change = Change(symbol.location, symbol.part, symbol.text, "?")
-        edits = change_edits(document, change)
+        edits = document.make_change(change)
         return (symbol.location.file, edits[0][0], edits[0][1]) if edits else None
 
     def at(self, file: str, offset: int) -> Symbol | None:

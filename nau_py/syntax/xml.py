@@ -67,9 +67,9 @@ class _Parser:
             return self._take_start_tag(token)
         elif kind is TokenKind.END:
             return self._take_end_tag(token)
-        elif kind is TokenKind.COMMENT and not (len(token.text) > 6 and token.text[-3:] == "-->"):
+        elif kind is TokenKind.COMMENT and not token.closed:
             raise self._error(token.offset + 4, "the comment is not closed: no '-->' follows")
-        elif kind is TokenKind.DECLARATION and token.text[-1] != ">":
+        elif kind is TokenKind.DECLARATION and not token.closed:
             raise self._error(token.offset, "the declaration is not closed: no '>' follows")
         return None
 

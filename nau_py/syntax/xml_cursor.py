@@ -1,104 +1,90 @@
-"""Where in an XML text a cursor stands. Works on texts that are half written."""
+"""Find what is written at a cursor in XML. Half-written text is allowed."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from enum import StrEnum
 
-_TOKEN = re.compile(
-    r"<!--.*?(?:-->|\Z)|<[!?][^>]*(?:>|\Z)"
-    r"|</(?P<end>[\w.:\-]*)[^<>]*(?:>|(?=<)|\Z)"
-    r"|<(?P<tag>[\w.:\-]*)(?P<rest>(?:\"[^\"]*(?:\"|\Z)|'[^']*(?:'|\Z)|[^<>\"'])*)(?P<close>>|(?=<)|\Z)",
-    re.DOTALL,
-)
-_PAIR = re.compile(r"([\w.:\-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)'|([^\s/>\"']+))")
-_OPEN_VALUE = re.compile(r"([\w.:\-]+)\s*=\s*(?:\"([^\"]*)|'([^']*)|([^\s/>\"']*))$")
-_WORD = re.compile(r"[\w.:\-]*$")
+from nau_py.syntax.cursor import Cursor, CursorKind, Step
+from nau_py.syntax.xml_markup import Markup, split_markup
+from nau_py.syntax.xml_tokens import Token, TokenKind
 
-
-class Kind(StrEnum):
-    """What is written at the cursor."""
-
-    CHILD = "child"
-    """An element, or its name."""
-    ATTRIBUTE = "attribute"
-    VALUE = "value"
-    END = "end"
-    """The name of an end tag."""
-    KEY = "key"
-    """A key of a YAML map: attribute or child."""
+_WORD = re.compile(r"[\w.:\-]*")
+_VALUE_REST = {
+    '"': re.compile(r"[^\"<>\n]*"),
+    "'": re.compile(r"[^'<>\n]*"),
+    "": re.compile(r"[^\s/<>]*"),
+}
+"""The rest of a value by its quote. A value that is not closed yet ends with its line or tag."""
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One element on the way from the root, with the attributes that are written so far."""
-
-    tag: str
-    attributes: dict[str, str]
-
-
-@dataclass(frozen=True, slots=True)
-class Cursor:
-    """``path``: the elements around the cursor, outermost first. ``name``: the attribute whose
-    value it is. ``begin``, ``end``: the span of the word that is being written."""
-
-    kind: Kind
-    path: tuple[Step, ...]
-    name: str
-    begin: int
-    end: int
-
-
-def cursor_at(text: str, offset: int) -> Cursor:
-    """The cursor before the character at ``offset``."""
+def locate_xml_cursor(text: str, offset: int) -> Cursor:
+    """Return the cursor before the character at ``offset``."""
     path: list[Step] = []
-    for token in _TOKEN.finditer(text):
-        if token.start() >= offset:
+    for markup in split_markup(text):
+        if markup.begin >= offset:
             break
-        inside = offset < token.end() or (offset == token.end() and not token.group().endswith(">"))
-        if token["end"] is not None:
+        inside = offset < markup.end or (offset == markup.end and not markup.closed)
+        if markup.kind is TokenKind.END:
             if inside:
-                begin = token.start() + 2
-                return Cursor(Kind.END, tuple(path), "", begin, begin + len(token["end"]))
-            _close(path, token["end"])
-        elif token["tag"] is not None:
+                return Cursor(CursorKind.END, tuple(path), "", *markup.name_span)
+            _leave(path, markup.name)
+        elif markup.kind is TokenKind.START:
             if inside:
-                return _in_tag(text, offset, token, path)
-            if not token["rest"].rstrip().endswith("/"):
-                path.append(Step(token["tag"], _pairs(token["rest"])))
-        elif inside:  # a comment or a declaration
-            return Cursor(Kind.END, tuple(path), "", offset, offset)
-    return Cursor(Kind.CHILD, tuple(path), "", offset, offset)
+                return _locate_in_tag(text, offset, markup, path)
+            if not markup.empty:
+                path.append(_step(markup))
+        elif inside:
+            return Cursor(CursorKind.END, tuple(path), "", offset, offset)
+    return Cursor(CursorKind.CHILD, tuple(path), "", offset, offset)
 
 
-def _close(path: list[Step], tag: str) -> None:
-    """End the innermost element of that name; what it held open ends with it."""
+def _leave(path: list[Step], tag: str) -> None:
+    """End the innermost element of that name, and the elements in it that are still open."""
     for index in range(len(path) - 1, -1, -1):
         if path[index].tag == tag:
             del path[index:]
             return
 
 
-def _pairs(text: str) -> dict[str, str]:
-    return {m[1]: next(g for g in m.groups()[1:] if g is not None) for m in _PAIR.finditer(text)}
+def _step(markup: Markup) -> Step:
+    attributes = markup.attributes().items()
+    return Step(markup.name, {n: a.value.value for n, a in attributes if a.value.closed})
 
 
-def _in_tag(text: str, offset: int, token: re.Match[str], path: list[Step]) -> Cursor:
-    begin = token.start() + 1
-    if offset <= begin + len(token["tag"]):
-        return Cursor(Kind.CHILD, tuple(path), "", begin, begin + len(token["tag"]))
-    here = (*path, Step(token["tag"], _pairs(token["rest"])))
-    before = text[begin + len(token["tag"]) : offset]
-    value = _OPEN_VALUE.search(before)
-    if value is not None:
-        written = next(g for g in value.groups()[1:] if g is not None)
-        first = offset - len(written)
-        quote = text[first - 1]
-        stop = re.compile(rf"[^{quote}<>\n]*" if quote in "\"'" else r"[^\s/>]*")
-        found = stop.match(text, offset)
-        return Cursor(Kind.VALUE, here, value[1], first, found.end() if found else offset)
-    word = _WORD.search(before)
-    first = offset - len(word[0] if word else "")
-    after = re.compile(r"[\w.:\-]*").match(text, offset)
-    return Cursor(Kind.ATTRIBUTE, here, "", first, after.end() if after else offset)
+def _locate_in_tag(text: str, offset: int, markup: Markup, path: list[Step]) -> Cursor:
+    begin, end = markup.name_span
+    if offset <= end:
+        return Cursor(CursorKind.CHILD, tuple(path), "", begin, end)
+    here = (*path, _step(markup))
+    before = [token for token in markup.tokens if token.offset < offset]
+    last = before[-1]
+    name, first = _open_value(before, offset)
+    if name:
+        quote = last.quote if last.kind is TokenKind.VALUE else ""
+        return Cursor(CursorKind.VALUE, here, name, first, _match_end(quote, text, offset))
+    first = last.offset if last.kind is TokenKind.NAME else offset
+    rest = _WORD.match(text, offset)
+    return Cursor(CursorKind.ATTRIBUTE, here, "", first, rest.end() if rest else offset)
+
+
+def _match_end(quote: str, text: str, offset: int) -> int:
+    rest = _VALUE_REST[quote].match(text, offset)
+    return rest.end() if rest else offset
+
+
+def _open_value(before: list[Token], offset: int) -> tuple[str, int]:
+    """Return the name of the attribute whose value the last token is, or will be, and the offset
+    of the value; an empty name where no value is being written."""
+    solid = [token for token in before if token.kind is not TokenKind.SPACE]
+    last = solid[-1]
+    if last.kind is TokenKind.VALUE:
+        ended = last.end < offset or (last.quote and last.closed and last.end == offset)
+        if ended or before[-1] is not last:
+            return "", offset
+        solid.pop()
+        first = last.span[0]
+    else:
+        first = offset
+    if len(solid) > 1 and solid[-1].kind is TokenKind.EQUALS and solid[-2].kind is TokenKind.NAME:
+        return solid[-2].text, first
+    return "", offset

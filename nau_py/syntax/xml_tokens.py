@@ -77,7 +77,11 @@ class Token(NamedTuple):
 
     @property
     def closed(self) -> bool:
-        """Report if a value has its closing quote, or needs none."""
+        """Report if a comment, a declaration or a value has its end; an unquoted value has."""
+        if self.kind is TokenKind.COMMENT:
+            return len(self.text) >= len("<!---->") and self.text.endswith("-->")
+        if self.kind is TokenKind.DECLARATION:
+            return self.text[-1] == ">"
         quote = self.quote
         return not quote or (len(self.text) > 1 and self.text[-1] == quote)
 

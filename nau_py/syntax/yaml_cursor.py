@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from nau_py.lsp.place import ITEM
-from nau_py.syntax.xml_cursor import Cursor, Kind, Step
+from nau_py.syntax.cursor import ITEM, Cursor, CursorKind, Step
 
 _LINE = re.compile(r"(?P<blank>[ ]*)(?P<dashes>(?:-[ ]+)*)(?P<rest>.*)$")
 _KEY = re.compile(r"(?P<key>[^\s:#,{}\[\]\"'][^:#,{}\[\]]*?)[ ]*:(?:[ ]+|$)")
@@ -41,14 +40,14 @@ def _line(text: str) -> _Line | None:
     return _Line(tuple(indents), key["key"] if key else "", found["rest"])
 
 
-def cursor_at(text: str, offset: int) -> Cursor:
+def locate_yaml_cursor(text: str, offset: int) -> Cursor:
     """The cursor before the character at ``offset``."""
     begin = text.rfind("\n", 0, offset) + 1
     end = text.find("\n", offset)
     whole = text[begin : len(text) if end < 0 else end]
     before = whole[: offset - begin]
     if " #" in before or before.lstrip().startswith("#"):
-        return Cursor(Kind.END, (), "", offset, offset)
+        return Cursor(CursorKind.END, (), "", offset, offset)
     lines = text[:begin].split("\n")[:-1] if begin else []
     after = text[begin + len(whole) + 1 :].split("\n")
     shape = _LINE.match(before)
@@ -59,14 +58,14 @@ def cursor_at(text: str, offset: int) -> Cursor:
     path = _above(lines, after, (*dash_columns, column), before, whole)
     key = _KEY.match(rest)
     if key is None:
-        return _word(Kind.KEY, path, "", text, offset, rest)
+        return _word(CursorKind.KEY, path, "", text, offset, rest)
     if "{" in rest[key.end() :] or rest.startswith("{"):
         return _flow(path, key["key"], rest[key.end() :], text, offset)
-    return _word(Kind.VALUE, path, key["key"], text, offset, rest[key.end() :])
+    return _word(CursorKind.VALUE, path, key["key"], text, offset, rest[key.end() :])
 
 
 def _word(
-    kind: Kind, path: tuple[Step, ...], name: str, text: str, offset: int, written: str
+    kind: CursorKind, path: tuple[Step, ...], name: str, text: str, offset: int, written: str
 ) -> Cursor:
     word = written.lstrip("\"' [")
     word = word[max(word.rfind(","), word.rfind("{")) + 1 :].lstrip()
@@ -82,8 +81,8 @@ def _flow(path: tuple[Step, ...], key: str, rest: str, text: str, offset: int) -
     last = inside[inside.rfind(",") + 1 :]
     name, colon, value = last.partition(":")
     if colon:
-        return _word(Kind.VALUE, here, name.strip(), text, offset, value)
-    return _word(Kind.KEY, here, "", text, offset, last)
+        return _word(CursorKind.VALUE, here, name.strip(), text, offset, value)
+    return _word(CursorKind.KEY, here, "", text, offset, last)
 
 
 def _above(

@@ -10,23 +10,15 @@ from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Node, Setting
 from nau_py.model.project import UserAttribute
 from nau_py.model.values import Scalar, format_scalar
-from nau_py.syntax.edit import (
-    Document,
-    Edit,
-    attribute_edits,
-    insert_edits,
-    setting_edits,
-    value_edits,
-)
+from nau_py.syntax.document import Document, Edit
+from nau_py.syntax.edit import FileEdits, read_document
 from nau_py.viewer.controls import Values, home, parts_of
 
-Files = dict[Path, tuple[Document, list[Edit]]]
 
-
-def save_edits(project: Project, values: Values) -> tuple[Files, list[str]]:
+def save_edits(project: Project, values: Values) -> tuple[FileEdits, list[str]]:
     """The edits that give the project's files ``values``, by file, and the keys that no file can
     hold. Raises :class:`OSError` for a file that cannot be read."""
-    files: Files = {}
+    files: FileEdits = {}
     left: list[str] = []
     for key, value in values.items():
         node = home(project, key)
@@ -34,7 +26,7 @@ def save_edits(project: Project, values: Values) -> tuple[Files, list[str]]:
         if node is None or path is None or not node.location.line:
             left.append(key)
             continue
-        document, edits = files.setdefault(path, (Document.read(path), []))
+        document, edits = files.setdefault(path, (read_document(path), []))
         found = _edits(project, document, node, key, value)
         if found is None:
             left.append(key)
@@ -59,23 +51,23 @@ def _edits(
         return _default_edits(document, node, value)
     if not isinstance(node, Configured):
         begin = document.offset(node.where(component))
-        return value_edits(document, begin, write_text(value[0]))
+        return document.set_value(begin, write_text(value[0]))
     attribute = project.registry[type_].attributes[component]
     written: Setting | None = node.settings.get(component)
     if isinstance(node, Projection):
         assert written is not None  # home() has found it here
         begin = document.offset(written.location)
-        return value_edits(document, begin, _texts(project, written, value)[0])
+        return document.set_value(begin, _texts(project, written, value)[0])
     if written is not None:
         begin = document.offset(written.location)
         texts = _texts(project, written, value)
-        return setting_edits(document, begin, spellings_of(attribute), texts)
+        return document.set_components(begin, spellings_of(attribute), texts)
     texts = [write_text(v) for v in value]
     begin = document.offset(node.location)
     if isinstance(node, Camera) and node.projection and len(value) == 1:
         place = document.offset(node.projection.location)  # it is applied last, so it wins
-        return attribute_edits(document, place, component, texts[0]) or None
-    return insert_edits(document, begin, component, keys_of(attribute), texts) or None
+        return document.set_attribute(place, component, texts[0]) or None
+    return document.add_setting(begin, component, keys_of(attribute), texts) or None
 
 
 def _default_edits(
@@ -87,10 +79,10 @@ def _default_edits(
     edits: list[Edit] = []
     for key, part in zip(["value"] if len(value) == 1 else vector, value):
         if key in given:
-            edits += value_edits(document, document.offset(given[key]), write_text(part))
+            edits += document.set_value(document.offset(given[key]), write_text(part))
         else:
             begin = document.offset(node.location)
-            edits += attribute_edits(document, begin, key, write_text(part))
+            edits += document.set_attribute(begin, key, write_text(part))
     return edits
 
 

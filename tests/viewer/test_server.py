@@ -24,7 +24,7 @@ pytest.importorskip("uvicorn", reason="the extra [view] is not installed")
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 
 import nau_py.cli.view as command
-from nau_py.syntax.edit import Document
+from nau_py.syntax.document import Document
 from tests.viewer.served import TOKEN, Served, sharp
 
 
