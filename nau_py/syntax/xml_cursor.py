@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from nau_py.syntax.cursor import Cursor, CursorKind, Step
-from nau_py.syntax.xml_markup import Markup, split_markup
+from nau_py.syntax.xml_markup import TokenGroup, split_markup
 from nau_py.syntax.xml_tokens import Token, TokenKind
 
 _WORD = re.compile(r"[\w.:\-]*")
@@ -46,12 +46,12 @@ def _leave(path: list[Step], tag: str) -> None:
             return
 
 
-def _step(markup: Markup) -> Step:
+def _step(markup: TokenGroup) -> Step:
     attributes = markup.attributes().items()
     return Step(markup.name, {n: a.value.value for n, a in attributes if a.value.closed})
 
 
-def _locate_in_tag(text: str, offset: int, markup: Markup, path: list[Step]) -> Cursor:
+def _locate_in_tag(text: str, offset: int, markup: TokenGroup, path: list[Step]) -> Cursor:
     begin, end = markup.name_span
     if offset <= end:
         return Cursor(CursorKind.CHILD, tuple(path), "", begin, end)

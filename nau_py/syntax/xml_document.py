@@ -8,7 +8,7 @@ from functools import cached_property
 from xml.sax.saxutils import escape
 
 from nau_py.syntax.document import Document, Edit, find_word, is_same_value
-from nau_py.syntax.xml_markup import Markup, WrittenAttribute, split_markup
+from nau_py.syntax.xml_markup import TokenGroup, WrittenAttribute, split_markup
 from nau_py.syntax.xml_tokens import Token, TokenKind
 
 _QUOTES = {'"': "&quot;", "'": "&apos;"}
@@ -19,7 +19,7 @@ class XmlDocument(Document):
     """The text of an XML file."""
 
     @cached_property
-    def _markup(self) -> list[Markup]:
+    def _markup(self) -> list[TokenGroup]:
         return list(split_markup(self.text))
 
     @cached_property
@@ -28,7 +28,7 @@ class XmlDocument(Document):
         return {markup.begin: index for index, markup in enumerate(self._markup)}
 
     @cached_property
-    def _attribute_at(self) -> dict[int, tuple[Markup, WrittenAttribute]]:
+    def _attribute_at(self) -> dict[int, tuple[TokenGroup, WrittenAttribute]]:
         """Attributes and their tags, by the offset of the value without its quote."""
         return {
             attribute.value.span[0]: (markup, attribute)
@@ -37,7 +37,7 @@ class XmlDocument(Document):
             for attribute in markup.attributes().values()
         }
 
-    def _tag(self, begin: int) -> Markup | None:
+    def _tag(self, begin: int) -> TokenGroup | None:
         index = self._index_at.get(begin)
         markup = self._markup[index] if index is not None else None
         return markup if markup is not None and markup.kind is TokenKind.START else None
@@ -120,7 +120,7 @@ class XmlDocument(Document):
         spans = [tag.name_span, *([end.name_span] if end is not None else [])]
         return [(first, last, new) for first, last in spans]
 
-    def _end_tag(self, begin: int) -> Markup | None:
+    def _end_tag(self, begin: int) -> TokenGroup | None:
         """Return the end tag of the element at ``begin``; None where it has none."""
         first = self._index_at[begin]
         depth = 0

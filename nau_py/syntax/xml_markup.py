@@ -25,7 +25,7 @@ class WrittenAttribute:
 
 
 @dataclass(frozen=True, slots=True)
-class Markup:
+class TokenGroup:
     """A start tag, an end tag, a comment or a declaration: its tokens, in order."""
 
     tokens: tuple[Token, ...]
@@ -90,7 +90,7 @@ class Markup:
         return found
 
 
-def split_markup(text: str, begin: int = 0) -> Iterator[Markup]:
+def split_markup(text: str, begin: int = 0) -> Iterator[TokenGroup]:
     """Return the tags, comments and declarations of ``text`` from ``begin`` on, in order.
 
     ``begin`` must not be inside of a tag.
@@ -98,9 +98,9 @@ def split_markup(text: str, begin: int = 0) -> Iterator[Markup]:
     group: list[Token] = []
     for token in tokenise(text, begin):
         if group and (token.kind in _BEGINS or token.kind in _BETWEEN):
-            yield Markup(tuple(group))
+            yield TokenGroup(tuple(group))
             group = []
         if token.kind not in _BETWEEN:
             group.append(token)
     if group:
-        yield Markup(tuple(group))
+        yield TokenGroup(tuple(group))
