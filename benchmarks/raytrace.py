@@ -80,18 +80,18 @@ def cornell() -> tuple[RayGeometry, CameraState]:
         return SceneObject("o", mesh, matrix)
 
     objects = [
-        placed(primitives.square("white"), (1, 1, 1), (0, 0, 0)),
-        placed(primitives.box("white"), (1, 1, 0.01), (0, 1, -1)),
-        placed(primitives.box("red"), (0.01, 1, 1), (-1, 1, 0)),
-        placed(primitives.box("green"), (0.01, 1, 1), (1, 1, 0)),
-        placed(primitives.box("white"), (0.3, 0.6, 0.3), (-0.35, 0.6, -0.3)),
-        placed(primitives.box("white"), (0.3, 0.3, 0.3), (0.35, 0.3, 0.35)),
+        placed(primitives.make_square("white"), (1, 1, 1), (0, 0, 0)),
+        placed(primitives.make_box("white"), (1, 1, 0.01), (0, 1, -1)),
+        placed(primitives.make_box("red"), (0.01, 1, 1), (-1, 1, 0)),
+        placed(primitives.make_box("green"), (0.01, 1, 1), (1, 1, 0)),
+        placed(primitives.make_box("white"), (0.3, 0.6, 0.3), (-0.35, 0.6, -0.3)),
+        placed(primitives.make_box("white"), (0.3, 0.3, 0.3), (0.35, 0.3, 0.35)),
     ]
     return gather_triangles(objects), camera_of((0, 1, 3.2), (0, 0.9, 0))
 
 
 def mesh_300k() -> tuple[RayGeometry, CameraState]:
-    ball = primitives.sphere(548, 274, "white")
+    ball = primitives.make_sphere(548, 274, "white")
     bumps = 1 + 0.03 * np.sin(40 * ball.positions[:, :1]) * np.sin(40 * ball.positions[:, 1:2])
     ball.attributes["position"][:, :3] *= bumps
     return gather_triangles([SceneObject("o", ball)]), camera_of((0, 0.3, 2.4), (0, 0, 0))

@@ -11,7 +11,7 @@ from nau_py.model.linked import Project
 from nau_py.passes import pass_classes
 from nau_py.rules.engine import lint as find_faults
 from nau_py.run.pipeline_choice import choose_pipeline
-from nau_py.scene.names import default_material_names
+from nau_py.scene.names import list_default_materials
 
 
 def load(path: str | Path) -> Project:
@@ -38,7 +38,7 @@ def lint(project: Project, models: bool = False) -> list[Diagnostic]:
     ``models``: load its models too, once nothing else is an error, and add their faults: vertices
     that are not finite, faces that rays leave out, coordinates too large.
     """
-    found = find_faults(project, pass_classes(), default_material_names(project))
+    found = find_faults(project, pass_classes(), list_default_materials(project))
     if models and project.file.tag and not any(d.severity is Severity.ERROR for d in found):
         from nau_py.passes.models import model_faults
 

@@ -30,7 +30,7 @@ from nau_py.passes import pass_classes
 from nau_py.passes.frame import RunOptions
 from nau_py.rules.engine import lint
 from nau_py.run.pipeline_choice import choose_pipeline
-from nau_py.scene.names import default_material_names
+from nau_py.scene.names import list_default_materials
 
 RUNS = 5
 LEAST_SPP, MORE_SPP = 256, 8
@@ -139,7 +139,7 @@ def cost(
     Raises :class:`~nau_py.ProjectError` for a project with lint errors and for knobs that do
     not exist, and what rendering raises.
     """
-    diagnostics = lint(project, pass_classes(), default_material_names(project))
+    diagnostics = lint(project, pass_classes(), list_default_materials(project))
     wrong = [d for d in diagnostics if d.severity is Severity.ERROR]
     if wrong:
         raise ProjectError(wrong)

@@ -32,7 +32,7 @@ from nau_py.model.raytrace import BUILTIN, Program, RayMaterial, RaytracePass, R
 from nau_py.model.references import CONTEXTS, known_names
 from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
 from nau_py.raytrace.programs.source import stand_in
-from nau_py.scene.names import default_material_names
+from nau_py.scene.names import list_default_materials
 from nau_py.syntax.cursor import ITEM, Cursor, CursorKind, Step
 from nau_py.syntax.xml_cursor import locate_xml_cursor
 from nau_py.syntax.yaml_cursor import locate_yaml_cursor
@@ -256,7 +256,7 @@ def _by_siblings(
         for name in OBJECT_TYPES:
             yield Completion(name, name, "value", "object type")
     elif isinstance(place, Inside) and (place.cls, key) in _PATTERNS:
-        for name in sorted(default_material_names(project) or ()):
+        for name in sorted(list_default_materials(project) or ()):
             yield Completion(name, name, "name", "material of a model")
     elif key == "ray":
         for name in ray_types(project):

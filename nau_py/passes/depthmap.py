@@ -10,7 +10,7 @@ from nau_py.model.passes import Pass
 from nau_py.passes.default import DefaultClass
 from nau_py.passes.drawing import begin_drawing, draw_scenes
 from nau_py.passes.frame import FrameContext
-from nau_py.passes.light_camera import frustum_corners, light_camera
+from nau_py.passes.light_camera import compute_frustum_corners, light_camera
 from nau_py.passes.registry import register_pass
 from nau_py.passes.report import PassReport
 
@@ -39,7 +39,7 @@ class DepthmapClass(DefaultClass):
             if attribute in registry:
                 distances[index] = float(frame.project.value(pass_, "PASS", attribute)[0])
         name = f"{frame.session.pipeline}#{pass_.name}-LightCam"
-        corners = frustum_corners(eye, aspect, *distances)
+        corners = compute_frustum_corners(eye, aspect, *distances)
         lights = frame.lights(pass_) or [frame.world.light("__nauDefault")]
         camera = light_camera(name, lights[0], corners)
         frame.world.add_camera(camera)

@@ -9,7 +9,7 @@ from nau_py.scene.lights import LightState
 from nau_py.scene.mesh import F64
 
 
-def frustum_corners(camera: CameraState, aspect: float, near: float, far: float) -> F64:
+def compute_frustum_corners(camera: CameraState, aspect: float, near: float, far: float) -> F64:
     """Return the eight corners of a frustum between two distances, world space, (8, 3)."""
     corners = []
     for distance in (near, far):

@@ -16,8 +16,8 @@ from nau_py.passes.drawing import begin_drawing, draw_context, draw_mesh, run_pr
 from nau_py.passes.frame import FrameContext
 from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport
-from nau_py.scene.material import RenderMaterial, TextureBinding, default_material
-from nau_py.scene.primitives import quad
+from nau_py.scene.material import RenderMaterial, TextureBinding, make_default_material
+from nau_py.scene.primitives import make_quad
 from nau_py.scene.readers.model_material import QUAD_MATERIAL
 
 
@@ -64,7 +64,7 @@ class QuadClass(PassClass):
             found = table.get(library, pass_.material.name or "")
             if found is not None:
                 return found
-        plain = table.get(DEFAULT_LIBRARY, QUAD_MATERIAL) or default_material(
+        plain = table.get(DEFAULT_LIBRARY, QUAD_MATERIAL) or make_default_material(
             frame.project, QUAD_MATERIAL
         )
         if isinstance(pass_, QuadPass) and pass_.texture is not None:
@@ -76,7 +76,7 @@ class QuadClass(PassClass):
     def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
         view = begin_drawing(pass_, frame)
         run_process(pass_.preProcess, frame)
-        draw_mesh(quad(), self.material(pass_, frame), draw_context(pass_, frame, view))
+        draw_mesh(make_quad(), self.material(pass_, frame), draw_context(pass_, frame, view))
         frame.session.resources.barrier()
         run_process(pass_.postProcess, frame)
         return PassReport(pixels=view.pixels)

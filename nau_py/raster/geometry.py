@@ -9,7 +9,7 @@ import numpy as np
 
 from nau_py.raster import gl
 from nau_py.raster.programs import Program
-from nau_py.scene.adjacency import with_neighbours
+from nau_py.scene.adjacency import add_neighbours
 from nau_py.scene.mesh import Mesh
 
 
@@ -46,7 +46,7 @@ class Geometry:
         }
         listed = [group.indices for group in mesh.groups]
         if mesh.adjacency:
-            listed = [with_neighbours(indices) for indices in listed]
+            listed = [add_neighbours(indices) for indices in listed]
         counts = [indices.size for indices in listed]
         first = [0, *np.cumsum(counts)[:-1].tolist()]
         flat = np.concatenate([indices.reshape(-1) for indices in listed])

@@ -37,7 +37,7 @@ from nau_py.run.frame_loop import FrameLoop, leave_out
 from nau_py.run.parameters import parse
 from nau_py.run.report import machine_facts, make_report
 from nau_py.run.scripts import Scripts, hooks
-from nau_py.scene.names import default_material_names
+from nau_py.scene.names import list_default_materials
 from nau_py.scene.world import World
 
 DEFAULT_TIME_STEP = 0.02
@@ -72,7 +72,7 @@ class Renderer:
         self._parameters = [parse(project, k, v) for k, v in (parameters or {}).items()]
         self.project = project
         self.diagnostics: list[Diagnostic] = lint(
-            project, pass_classes(), default_material_names(project)
+            project, pass_classes(), list_default_materials(project)
         )
         errors = [d for d in self.diagnostics if d.severity is Severity.ERROR]
         if errors:

@@ -7,12 +7,13 @@ import numpy as np
 from nau_py.scene.mesh import U32
 
 
-def with_neighbours(triangles: U32) -> U32:
-    """(m, 3) to (m, 6): each corner, then the far corner of the triangle beyond the edge that
-    leaves it; at an open edge the corner again.
+def add_neighbours(triangles: U32) -> U32:
+    """Add the neighbours of triangles: uint32 (m, 3) to (m, 6).
 
-    The order of GL_TRIANGLES_ADJACENCY (OpenGL 4.5 specification, 10.1.14), from the third corner
-    on, as Nau has it. Triangles are neighbours that share two vertices, not two places.
+    After each corner comes the far corner of the triangle beyond the edge that begins there, or at
+    an open edge the corner again. The order is that of GL_TRIANGLES_ADJACENCY (OpenGL 4.5
+    specification, 10.1.14), from the third corner on, as in Nau. Neighbours share two vertices;
+    equal positions do not count.
     """
     if not len(triangles):
         return np.zeros((0, 6), np.uint32)

@@ -1,4 +1,4 @@
-"""A ``<scene>`` element to scene objects, by Nau's scene types (docs/format.md, 3.4)."""
+"""Scene objects from ``<scene>`` elements, by Nau's scene types (docs/format.md, 3.4)."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from nau_py.model.linked import Project
 from nau_py.model.scene import BufferGeometry, Primitive, Scene, Terrain
 from nau_py.process.paths import resolve
 from nau_py.scene import primitives
-from nau_py.scene.mesh import Group, Mesh, SceneObject, merge, pad4, transform_mesh
+from nau_py.scene.mesh import Group, Mesh, SceneObject, merge_meshes, pad4, transform_mesh
 from nau_py.scene.readers.loading import list_suffixes, read_model
 from nau_py.scene.readers.model_error import ModelError
 from nau_py.scene.readers.model_material import PRIMITIVE_MATERIAL, ModelMaterial
 from nau_py.scene.readers.terrain import load_terrain
-from nau_py.scene.transforms import transform_of
+from nau_py.scene.transforms import compose_transform
 
 _MERGED_TYPES = ("OctreeUnified",)
 
 
 class SceneBuilder:
-    """Builds scenes, sharing primitives by name as Nau does, and collects their materials."""
+    """Builds scenes and their materials. Primitives of one name share one mesh, as in Nau."""
 
     def __init__(self, project: Project) -> None:
         self.project = project
@@ -35,8 +35,8 @@ class SceneBuilder:
         self._primitives: dict[str, Mesh] = {}
 
     def build(self, scene: Scene) -> list[SceneObject]:
-        """The objects of ``scene``, in world space where its type bakes transforms."""
-        objects = self._objects(scene)
+        """Build the objects of ``scene``, in world space if its type bakes transforms."""
+        objects = self._make_objects(scene)
         if not objects:
             return []
         if scene.has_flag("USE_ADJACENCY"):
@@ -45,62 +45,62 @@ class SceneBuilder:
         merged = (scene.type or "OctreeUnified") in _MERGED_TYPES
         if merged and not any(o.mesh.buffers for o in objects):
             baked = [transform_mesh(o.mesh, o.matrix) for o in objects]
-            objects = [SceneObject(scene.name or "default", merge(baked))]
+            objects = [SceneObject(scene.name or "default", merge_meshes(baked))]
             if scene.has_flag("UNITIZE"):  # its box is the merged object's: no scene transform
-                objects = _unitize(objects)
+                objects = _scale_to_unit(objects)
         if scene.filename is None:
-            matrix = transform_of(self.project, scene, "SCENE")
+            matrix = compose_transform(self.project, scene, "SCENE")
             objects = [SceneObject(o.name, o.mesh, matrix @ o.matrix) for o in objects]
         if scene.has_flag("UNITIZE") and not merged:
-            objects = _unitize(objects)
+            objects = _scale_to_unit(objects)
         return objects
 
-    def _objects(self, scene: Scene) -> list[SceneObject]:
+    def _make_objects(self, scene: Scene) -> list[SceneObject]:
         swap = scene.has_flag("SWAP_YZ")
         if scene.filename is not None:
-            return self._file(scene.filename, scene.where("filename"), swap)
-        objects = [o for g in scene.geometry for o in self._geometry(g)]
-        objects += [o for t in scene.terrain for o in self._terrain(t)]
-        objects += [self._buffers(b) for b in scene.buffers]
+            return self._read_file(scene.filename, scene.where("filename"), swap)
+        objects = [o for g in scene.geometry for o in self._place_primitive(g)]
+        objects += [o for t in scene.terrain for o in self._make_terrain(t)]
+        objects += [self._make_buffer_object(b) for b in scene.buffers]
         for file in scene.files:
             if file.name is not None:
-                objects += self._file(file.name, file.where("name"), swap)
+                objects += self._read_file(file.name, file.where("name"), swap)
         for folder in scene.folders:
-            objects += self._folder(folder.name or "", folder.where("name"), swap)
+            objects += self._read_folder(folder.name or "", folder.where("name"), swap)
         return objects
 
-    def _geometry(self, node: Primitive) -> list[SceneObject]:
+    def _place_primitive(self, node: Primitive) -> list[SceneObject]:
         name = node.name or ""
         mesh = self._primitives.get(name)
         if mesh is None:
-            mesh = self._primitive(node)
+            mesh = self._make_primitive(node)
             if mesh is None:
                 return []
             self._primitives[name] = mesh
             self.new_materials += [g.material for g in mesh.groups]
-        return [SceneObject(name, mesh, transform_of(self.project, node, "SCENE_OBJECT"))]
+        return [SceneObject(name, mesh, compose_transform(self.project, node, "SCENE_OBJECT"))]
 
-    def _primitive(self, node: Primitive) -> Mesh | None:
+    def _make_primitive(self, node: Primitive) -> Mesh | None:
         def size(name: str, set_: str, default: float) -> float:
             setting = (node.sphere if set_ == "SPHERE" else node.grid).get(name)
             return self.project.number(setting.parts[0]) if setting else default
 
         material = node.material or PRIMITIVE_MATERIAL
         if node.type == "BOX":
-            return primitives.box(material)
+            return primitives.make_box(material)
         if node.type == "SQUARE":
-            return primitives.square(material)
+            return primitives.make_square(material)
         if node.type == "SPHERE":
             slices, stacks = size("SLICES", "SPHERE", 10), size("STACKS", "SPHERE", 10)
-            return primitives.sphere(max(int(slices), 2), max(int(stacks), 3), material)
+            return primitives.make_sphere(max(int(slices), 2), max(int(stacks), 3), material)
         if node.type == "GRID":
             divisions, length = size("DIVISIONS", "GRID", 10), size("LENGTH", "GRID", 1.0)
-            return primitives.grid(max(int(divisions), 1), length, material)
+            return primitives.make_grid(max(int(divisions), 1), length, material)
         if node.type == "AXIS":
-            return primitives.axis(node.material)
+            return primitives.make_axis(node.material)
         return None
 
-    def _terrain(self, node: Terrain) -> list[SceneObject]:
+    def _make_terrain(self, node: Terrain) -> list[SceneObject]:
         where = node.where("heightMap")
         found = resolve(Path(where.file).parent, node.heightMap or "")
         if not found.exists:
@@ -114,10 +114,10 @@ class SceneBuilder:
             )
             return []
         self.new_materials.append(material)
-        matrix = transform_of(self.project, node, "SCENE_OBJECT")
+        matrix = compose_transform(self.project, node, "SCENE_OBJECT")
         return [SceneObject(node.name or "", mesh, matrix)]
 
-    def _buffers(self, node: BufferGeometry) -> SceneObject:
+    def _make_buffer_object(self, node: BufferGeometry) -> SceneObject:
         material = node.material or "__nauDefault"
         self.new_materials.append(material)
         places = {a.tag: qualified(a.name or "", a.fromLibrary or "") for a in node.attributes}
@@ -125,21 +125,21 @@ class SceneBuilder:
         mesh = Mesh({}, [group], node.primitive or "TRIANGLES", places)
         return SceneObject(node.name or "", mesh)
 
-    def _folder(self, name: str, where: Location, swap: bool) -> list[SceneObject]:
+    def _read_folder(self, name: str, where: Location, swap: bool) -> list[SceneObject]:
         folder = resolve(Path(where.file).parent, name)
         objects: list[SceneObject] = []
         if folder.exists and folder.best.is_dir():
             known = list_suffixes()
             for path in sorted(folder.best.iterdir()):
                 if path.suffix.lower() in known:
-                    objects += self._read(path, where, swap)
+                    objects += self._read_objects(path, where, swap)
         return objects
 
-    def _file(self, name: str, where: Location, swap: bool) -> list[SceneObject]:
+    def _read_file(self, name: str, where: Location, swap: bool) -> list[SceneObject]:
         found = resolve(Path(where.file).parent, name)
-        return self._read(found.best, where, swap) if found.exists else []
+        return self._read_objects(found.best, where, swap) if found.exists else []
 
-    def _read(self, path: Path, where: Location, swap: bool) -> list[SceneObject]:
+    def _read_objects(self, path: Path, where: Location, swap: bool) -> list[SceneObject]:
         try:
             objects, materials = read_model(path, swap)
         except ModelError as problem:
@@ -149,15 +149,17 @@ class SceneBuilder:
             )
             return []
         for material in materials:
-            self._existing_textures(material, path, where)
+            self._remove_missing_textures(material, path, where)
         self.materials += materials
         self.new_materials += [g.material for o in objects for g in o.mesh.groups]
         for item in objects:
-            item.mesh = self._valid(item.mesh, path, where)
+            item.mesh = self._remove_bad_faces(item.mesh, path, where)
         return objects
 
-    def _existing_textures(self, material: ModelMaterial, path: Path, where: Location) -> None:
-        """Forget textures whose file is missing, as Nau does, with a warning each."""
+    def _remove_missing_textures(
+        self, material: ModelMaterial, path: Path, where: Location
+    ) -> None:
+        """Remove textures whose file is missing, as Nau does, with a warning for each."""
         for unit, texture in list(material.textures.items()):
             if not texture.is_file():
                 del material.textures[unit]
@@ -167,8 +169,8 @@ class SceneBuilder:
                 )
                 self.diagnostics.append(warning("M004", where, message))
 
-    def _valid(self, mesh: Mesh, path: Path, where: Location) -> Mesh:
-        """``mesh`` without faces that have a non-finite vertex; each mesh is reported once."""
+    def _remove_bad_faces(self, mesh: Mesh, path: Path, where: Location) -> Mesh:
+        """Remove the faces that have a non-finite vertex; report each mesh once."""
         if mesh.buffers:
             return mesh
         bad = np.asarray(~np.isfinite(mesh.positions).all(axis=1))
@@ -189,7 +191,7 @@ class SceneBuilder:
         return Mesh(attributes, groups, mesh.primitive, adjacency=mesh.adjacency)
 
 
-def _unitize(objects: list[SceneObject]) -> list[SceneObject]:
+def _scale_to_unit(objects: list[SceneObject]) -> list[SceneObject]:
     """Scale positions so that the longest side of the scene's box spans -1..1 (10.9)."""
     world = [o.mesh.positions.astype(np.float64) @ o.matrix.T for o in objects]
     low = np.min([p[:, :3].min(axis=0) for p in world], axis=0)

@@ -1,4 +1,4 @@
-"""Cameras as they are while a frame is drawn (docs/format.md, 9.1)."""
+"""State of cameras while a frame is drawn (docs/format.md, 9.1)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _MAX_ELEVATION = 0.48 * pi
 
 
 def cross3(a: F64, b: F64) -> F64:
-    """The cross product of two vectors of three: numpy's takes ten times as long for so few."""
+    """Compute the cross product of two vectors of three, ten times as fast as numpy's."""
     x, y, z = a.tolist()
     u, v, w = b.tolist()
     return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
@@ -43,7 +43,7 @@ class CameraState:
 
     @property
     def right(self) -> F64:
-        """Unit right direction; any perpendicular one where UP is parallel to VIEW."""
+        """Unit right direction; any perpendicular one if UP is parallel to VIEW."""
         cross = cross3(self.forward, self.up)
         length = np.linalg.norm(cross)
         if length < 1e-12:
@@ -56,7 +56,7 @@ class CameraState:
         return cross3(self.right, self.forward)
 
     def view_matrix(self) -> F64:
-        """World to camera."""
+        """Compute the matrix from world to camera space, float64 (4, 4)."""
         right, forward = self.right, self.forward
         matrix = np.eye(4)
         matrix[0, :3], matrix[1, :3], matrix[2, :3] = right, cross3(right, forward), -forward
@@ -64,19 +64,22 @@ class CameraState:
         return matrix
 
     def projection_matrix(self, aspect: float) -> F64:
-        """Camera to clip; ``aspect`` is width / height of the viewport."""
+        """Compute the matrix from camera to clip space, float64 (4, 4).
+
+        ``aspect``: width / height of the viewport.
+        """
         v = self.values
         if self.ortho:
             return orthographic(v["LEFT"], v["RIGHT"], v["BOTTOM"], v["TOP"], v["NEAR"], v["FAR"])
         return perspective(v["FOV"], aspect if aspect > 0 else 1.0, v["NEAR"], v["FAR"])
 
     def half_extent(self, aspect: float) -> tuple[float, float]:
-        """Half width and height of the image plane at distance 1 (perspective)."""
+        """Compute half the width and height of a perspective image plane at distance 1."""
         half = tan(radians(self.values["FOV"]) / 2)
         return half * aspect, half
 
     def apply(self, name: str, parts: tuple[Scalar, ...]) -> None:
-        """Set one attribute as Nau does when it reads the tag: order matters."""
+        """Set one attribute as Nau does when it reads the tag. The order of the calls matters."""
         vector = np.array([float(p) for p in parts[:3]]) if len(parts) >= 3 else None
         if name == "POSITION" and vector is not None:
             self.position = vector
@@ -110,8 +113,8 @@ _PROJECTION = ("FOV", "NEAR", "FAR", "LEFT", "RIGHT", "TOP", "BOTTOM")
 _LENS = ("APERTURE", "FOCUS_DISTANCE")
 
 
-def camera_state(project: Project, camera: Camera | None, name: str) -> CameraState:
-    """The state of ``camera`` after its tags, in file order, then its projection."""
+def make_camera_state(project: Project, camera: Camera | None, name: str) -> CameraState:
+    """Make the state of ``camera``: its tags in file order, then its projection."""
     defaults = {
         key: float(project.registry["CAMERA"].default(key)[0]) for key in (*_PROJECTION, *_LENS)
     }

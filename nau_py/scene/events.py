@@ -13,13 +13,13 @@ from nau_py.model.scene import Scene
 from nau_py.scene.mesh import F64
 
 MAX_EVENTS = 10_000
-"""Events of one frame: routes that feed each other must end."""
+"""Upper bound for the events of a frame, because routes may feed each other."""
 Payload = float | tuple[float, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """What ``sender`` says; an empty ``receiver`` means everybody."""
+    """A message of ``sender``; an empty ``receiver`` means all."""
 
     kind: str
     sender: str
@@ -32,19 +32,19 @@ class TimeSensor:
 
     def __init__(self, node: Sensor) -> None:
         self.name = node.name or ""
-        self.enabled = _value(node.enabled, 0.0) != 0
-        self.loop = _value(node.loop, 0.0) != 0
-        self.interval = _value(node.cycleInterval, 0.0)
-        self.start = _value(node.secondsToStart, 0.0)
+        self.enabled = _number(node.enabled, 0.0) != 0
+        self.loop = _number(node.loop, 0.0) != 0
+        self.interval = _number(node.cycleInterval, 0.0)
+        self.start = _number(node.secondsToStart, 0.0)
 
-    def hear(self, event: Event, now: float) -> None:
+    def receive(self, event: Event, now: float) -> None:
         if event.kind == "ACTIVATE" and not self.enabled:
             self.enabled, self.start = True, now
         elif event.kind == "DEACTIVATE":
             self.enabled = False
 
-    def tick(self, now: float) -> Event | None:
-        """The event of a frame at ``now``, seconds."""
+    def advance(self, now: float) -> Event | None:
+        """Advance the clock to ``now``, in seconds, and return the event of this frame, if any."""
         if not self.enabled:
             return None
         if now > self.start + self.interval:
@@ -59,17 +59,17 @@ class TimeSensor:
 
 
 class ProximitySensor:
-    """Notices when a position enters or leaves an axis-aligned box."""
+    """Sends an event when a position enters or leaves an axis-aligned box."""
 
     def __init__(self, node: Sensor) -> None:
         self.name = node.name or ""
-        self.enabled = _value(node.enabled, 0.0) != 0
+        self.enabled = _number(node.enabled, 0.0) != 0
         centre, size = node.center, node.size
         self.centre = np.array([(getattr(centre, k) or 0.0) if centre else 0.0 for k in "xyz"])
         self.half = np.array([(getattr(size, k) or 0.0) / 2 if size else 0.0 for k in "xyz"])
         self.inside = False
 
-    def hear(self, event: Event, now: float) -> Event | None:
+    def receive(self, event: Event, now: float) -> Event | None:
         if event.kind != "PROXIMITY" or not self.enabled or isinstance(event.data, float):
             return None
         at = np.array(event.data[:3])
@@ -81,7 +81,7 @@ class ProximitySensor:
 
 
 class PositionInterpolator:
-    """Linear between key frames; silent outside their range."""
+    """Interpolates linearly between key frames; sends nothing outside their range."""
 
     def __init__(self, node: Interpolator) -> None:
         self.name = node.name or ""
@@ -90,7 +90,7 @@ class PositionInterpolator:
         rows = [[f.x or 0.0, f.y or 0.0, f.z or 0.0, f.w or 0.0] for f in frames]
         self.values: F64 = np.array(rows, np.float64).reshape(-1, 4)
 
-    def hear(self, event: Event) -> Event | None:
+    def receive(self, event: Event) -> Event | None:
         if event.kind != "SET_INTERPOLATOR_FRACTION" or not isinstance(event.data, float):
             return None
         if not len(self.keys) or not self.keys[0] <= event.data <= self.keys[-1]:
@@ -102,8 +102,8 @@ class PositionInterpolator:
 class EventSystem:
     """Runs a project's events frame by frame.
 
-    ``place(scene, attribute, values)`` and ``animate(scene, fraction)`` are called for what reaches
-    a scene: TRANSLATE or ROTATE, four numbers; a fraction from 0 to 1.
+    Events that reach a scene call ``place(scene, attribute, values)``, with TRANSLATE or ROTATE and
+    four numbers, or ``animate(scene, fraction)``, with a fraction from 0 to 1.
     """
 
     def __init__(
@@ -124,38 +124,38 @@ class EventSystem:
 
     @property
     def idle(self) -> bool:
-        """Whether nothing can ever happen."""
+        """True if no sensor can ever send an event."""
         return not self.clocks and not self.boxes
 
     def frame(self, now: float) -> None:
-        """What happens at the beginning of a frame at ``now``, seconds."""
-        waiting = deque(e for clock in self.clocks if (e := clock.tick(now)) is not None)
+        """Run the events of the beginning of a frame at ``now``, in seconds."""
+        waiting = deque(e for clock in self.clocks if (e := clock.advance(now)) is not None)
         for _ in range(MAX_EVENTS):
             if not waiting:
                 return
             waiting.extend(self._deliver(waiting.popleft(), now))
 
     def _deliver(self, event: Event, now: float) -> list[Event]:
-        answers: list[Event | None] = [
+        replies: list[Event | None] = [
             Event(r.eventIn or "", r.name or "", r.receiver or "", event.data)
             for r in self.routes
             if r.eventOut == event.kind and r.sender == event.sender
         ]
         for clock in self.clocks:
             if event.receiver in ("", clock.name):
-                clock.hear(event, now)
+                clock.receive(event, now)
         for box in self.boxes:
             if event.receiver in ("", box.name):
-                answers.append(box.hear(event, now))
+                replies.append(box.receive(event, now))
         for interpolator in self.interpolators:
             if event.receiver in ("", interpolator.name):
-                answers.append(interpolator.hear(event))
+                replies.append(interpolator.receive(event))
         for scene in self.scenes:
             if event.receiver in ("", scene):
-                self._tell(scene, event)
-        return [a for a in answers if a is not None]
+                self._apply_to_scene(scene, event)
+        return [reply for reply in replies if reply is not None]
 
-    def _tell(self, scene: str, event: Event) -> None:
+    def _apply_to_scene(self, scene: str, event: Event) -> None:
         if event.kind == "ANIMATE" and isinstance(event.data, float):
             self._animate(scene, event.data)
         elif event.kind in ("SET_POSITION", "SET_ROTATION") and isinstance(event.data, tuple):
@@ -163,5 +163,5 @@ class EventSystem:
             self._place(scene, attribute, event.data)
 
 
-def _value(node: SensorValue | None, default: float) -> float:
+def _number(node: SensorValue | None, default: float) -> float:
     return default if node is None or node.value is None else float(node.value)

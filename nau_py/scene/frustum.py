@@ -1,4 +1,4 @@
-"""The hidden scene that every camera has: the lines of its frustum (docs/format.md, 3.7)."""
+"""Lines of a camera's frustum, the hidden scene of each camera (docs/format.md, 3.7)."""
 
 from __future__ import annotations
 
@@ -12,9 +12,11 @@ _RIM = np.array([[0, 1], [1, 2], [2, 3], [3, 0]], np.uint32)
 _SIDES = np.array([[0, 4], [1, 5], [2, 6], [3, 7]], np.uint32)
 
 
-def frustum_corners(camera: CameraState, aspect: float) -> F32:
-    """Corners of the near, then of the far plane, from the upper left one clockwise; camera space,
-    (8, 4)."""
+def compute_frustum_corners(camera: CameraState, aspect: float) -> F32:
+    """Compute the corners of the near plane, then of the far plane, float32 (8, 4), camera space.
+
+    Each plane begins with the upper left corner and goes clockwise.
+    """
     v = camera.values
     corners = []
     for distance in (v["NEAR"], v["FAR"]):
@@ -28,8 +30,8 @@ def frustum_corners(camera: CameraState, aspect: float) -> F32:
     return pad4(np.array(corners), 1.0)
 
 
-def frustum_mesh(camera: CameraState, aspect: float) -> Mesh:
-    """Lines: the near plane in one material, the far plane and the edges between in another."""
+def make_frustum_mesh(camera: CameraState, aspect: float) -> Mesh:
+    """Make the lines: the near plane in one material, the rest in another."""
     far = Group(FAR_MATERIAL, np.concatenate([_SIDES, _RIM + 4]).astype(np.uint32))
     near = Group(NEAR_MATERIAL, _RIM)
-    return Mesh({"position": frustum_corners(camera, aspect)}, [far, near], "LINES")
+    return Mesh({"position": compute_frustum_corners(camera, aspect)}, [far, near], "LINES")

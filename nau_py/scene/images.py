@@ -1,4 +1,4 @@
-"""Image files as arrays by Nau's decoding rules (docs/format.md, 6.3)."""
+"""Image files as arrays, by Nau's decoding rules (docs/format.md, 6.3)."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class ImageError(Exception):
 
 
 def load_image(path: Path) -> NDArray[np.uint8]:
-    """Texels, uint8 (height, width, channels), row 0 at the bottom; 1, 2 or 4 channels.
+    """Load the texels, uint8 (height, width, channels), row 0 at the bottom; 1, 2 or 4 channels.
 
     Greyscale gives one channel, greyscale with alpha two, everything else RGBA. No sRGB
     conversion. Raises :class:`ImageError`.

@@ -1,4 +1,4 @@
-"""Lights as they are while a frame is drawn (docs/format.md, 9.2)."""
+"""State of lights while a frame is drawn (docs/format.md, 9.2)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from nau_py.model.values import Scalar
 
 _NEVER_NEGATIVE = ("CONSTANT_ATT", "LINEAR_ATT", "QUADRATIC_ATT")
 _LAST = {"POSITION": 1.0, "DIRECTION": 0.0}
-"""The fourth component, whatever the file says."""
+"""Fourth component of these attributes; that of the file is ignored."""
 
 
 @dataclass(slots=True)
@@ -23,11 +23,11 @@ class LightState:
     values: dict[str, tuple[Scalar, ...]] = field(default_factory=dict)
 
     def vector(self, name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-        """The first three components of an attribute."""
+        """Return the first three components of an attribute, float64 (3,)."""
         return np.array([float(v) for v in self.values[name][:3]])
 
     def set(self, name: str, parts: tuple[Scalar, ...]) -> None:
-        """Set one attribute; what follows from it follows."""
+        """Set one attribute, and with DIRECTION also NORMALIZED_DIRECTION."""
         if name in _NEVER_NEGATIVE:
             parts = (max(float(parts[0]), 0.0),)
         elif name in _LAST:
@@ -40,8 +40,8 @@ class LightState:
             self.values["NORMALIZED_DIRECTION"] = (*(float(u) for u in unit), 0.0)
 
 
-def light_state(project: Project, nodes: list[Light], name: str) -> LightState:
-    """The state of the light ``name``; nodes of one name are applied in order."""
+def make_light_state(project: Project, nodes: list[Light], name: str) -> LightState:
+    """Make the state of the light ``name``; apply the nodes of this name in order."""
     state = LightState(name, {a.name: a.default for a in project.registry["LIGHT"] if a.default})
     for key, parts in list(state.values.items()):
         state.set(key, parts)

@@ -1,4 +1,4 @@
-"""Which material a pass draws each material name with (docs/format.md, 4.6 and 4.7)."""
+"""Materials that a pass draws with, by material name (docs/format.md, 4.6 and 4.7)."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from nau_py.scene.material import (
     ImageBinding,
     RenderMaterial,
     TextureBinding,
-    from_library,
-    parts_of,
+    list_parts,
+    make_library_material,
 )
 
 _FLAGS = {
@@ -29,7 +29,7 @@ _FLAGS = {
 
 
 class MaterialTable:
-    """Every material by (library, name): files' and models'. First definitions win."""
+    """All materials of files and models by (library, name). The first definition stays."""
 
     def __init__(self, project: Project) -> None:
         self.project = project
@@ -39,7 +39,7 @@ class MaterialTable:
                 if library.name and node.name:
                     key = (library.name, node.name)
                     if key not in self._materials:
-                        self._materials[key] = from_library(project, library.name, node)
+                        self._materials[key] = make_library_material(project, library.name, node)
 
     def add(self, material: RenderMaterial) -> None:
         """Add a material of a model, unless the name is taken."""
@@ -49,17 +49,19 @@ class MaterialTable:
         return self._materials.get((library, name))
 
     def default_names(self) -> list[str]:
-        """Names in the default library, in order of definition."""
+        """List the names in the default library, in order of definition."""
         return [name for library, name in self._materials if library == DEFAULT_LIBRARY]
 
     def for_pass(self, pass_: Pass, pipeline: str, texture_filter: str = "") -> PassMaterials:
-        """The materials of ``pass_``. ``texture_filter``: NEAREST or LINEAR, the filter of image
-        textures that have no other."""
+        """Collect the materials of ``pass_``.
+
+        ``texture_filter``: NEAREST or LINEAR, for image textures that have no filter of their own.
+        """
         return PassMaterials(self, pass_, pipeline, texture_filter)
 
 
 class PassMaterials:
-    """The materials of one pass: injection maps first, then material maps, which win."""
+    """The materials of one pass: injection maps, then material maps, which override them."""
 
     def __init__(
         self, table: MaterialTable, pass_: Pass, pipeline: str, texture_filter: str = ""
@@ -86,7 +88,7 @@ class PassMaterials:
                     self._mapped[name] = target
 
     def __getitem__(self, name: str) -> RenderMaterial | None:
-        """The material to draw geometry of material ``name`` with."""
+        """Return the material to draw geometry of material ``name`` with."""
         found = self._mapped.get(name) or self._everything
         found = found or self._table.get(DEFAULT_LIBRARY, name)
         if not self._filter or found is None:
@@ -127,13 +129,13 @@ class PassMaterials:
             if texture.toUnit is not None:
                 clone.textures[texture.toUnit] = TextureBinding(
                     qualified(texture.name or "", texture.fromLibrary or ""),
-                    parts_of(texture.settings),
+                    list_parts(texture.settings),
                 )
         for image in injection.imageTextures:
             if image.toUnit is not None:
                 clone.images[image.toUnit] = ImageBinding(
                     qualified(image.texture or "", image.fromLibrary or ""),
-                    parts_of(image.settings),
+                    list_parts(image.settings),
                 )
         for bound in injection.buffers:
             clone.buffers.append(self._buffer(bound, bound.name, bound.fromLibrary))

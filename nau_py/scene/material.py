@@ -1,4 +1,4 @@
-"""Materials as passes draw them: everything resolved to names and values, nothing on the GPU."""
+"""Materials as passes draw them: resolved to names and values, nothing on the GPU."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class BufferBinding:
 
 @dataclass(frozen=True, slots=True)
 class UniformSource:
-    """A ``valueof``; ``library`` is where its named textures are looked up."""
+    """A ``valueof``; ``library`` is searched for the textures that it names."""
 
     uniform: str
     type: str
@@ -78,15 +78,19 @@ class RenderMaterial:
 
     @property
     def names(self) -> set[str]:
-        """What raytrace passes call it: alone, or after its library. Old projects write the default
-        library's name without underscores."""
+        """Names by which raytrace passes find it: alone, and after its library.
+
+        Old projects write the default library's name without underscores.
+        """
         libraries = {self.library} | ({OLD_DEFAULT} if self.library == DEFAULT_LIBRARY else set())
         joined = {f"{lib}{sign}{self.name}" for lib in libraries for sign in (":", "::")}
         return {self.name} | joined
 
     def clone(self, library: str) -> RenderMaterial:
-        """A copy for an injection map: sampler and image settings and image arrays are lost, as in
-        Nau (4.7)."""
+        """Copy the material for an injection map.
+
+        Sampler settings, image settings and image arrays are lost, as in Nau (4.7).
+        """
         return replace(
             self,
             library=library,
@@ -105,7 +109,7 @@ class RenderMaterial:
 
     @property
     def order(self) -> int:
-        """The drawing layer; negative is not drawn."""
+        """Drawing layer. A material with a negative one is not drawn."""
         return int(self.state.get("ORDER", (0,))[0])
 
     @property
@@ -113,12 +117,12 @@ class RenderMaterial:
         return self.order >= 0
 
 
-def parts_of(settings: Settings) -> tuple[tuple[str, tuple[Scalar, ...]], ...]:
+def list_parts(settings: Settings) -> tuple[tuple[str, tuple[Scalar, ...]], ...]:
     return tuple((name, setting.parts) for name, setting in settings.items())
 
 
-def uniform_sources(values: list[ValueOf], library: str) -> tuple[UniformSource, ...]:
-    """The sources of a material's uniforms; incomplete ones are left to lint."""
+def list_uniform_sources(values: list[ValueOf], library: str) -> tuple[UniformSource, ...]:
+    """List the sources of a material's uniforms, without incomplete ones, which lint reports."""
     return tuple(
         UniformSource(
             v.uniform,
@@ -135,28 +139,28 @@ def uniform_sources(values: list[ValueOf], library: str) -> tuple[UniformSource,
     )
 
 
-def default_material(project: Project, name: str) -> RenderMaterial:
-    """A clone of ``__nauDefault`` called ``name``, in the default library."""
+def make_default_material(project: Project, name: str) -> RenderMaterial:
+    """Copy ``__nauDefault`` as ``name``, in the default library."""
     found = project.material(DEFAULT_LIBRARY, "__nauDefault")
     colours = dict(DEFAULT_COLOURS)
     material = RenderMaterial(name, DEFAULT_LIBRARY, colours)
     if found is not None and found[1].shader is not None:
-        material.uniforms = uniform_sources(found[1].shader.values, DEFAULT_LIBRARY)
+        material.uniforms = list_uniform_sources(found[1].shader.values, DEFAULT_LIBRARY)
     return material
 
 
-def from_model(project: Project, source: ModelMaterial) -> RenderMaterial:
-    """The material that a model file brings."""
-    material = default_material(project, source.name)
+def make_model_material(project: Project, source: ModelMaterial) -> RenderMaterial:
+    """Make the material of a model file."""
+    material = make_default_material(project, source.name)
     material.colours |= source.colours
     for unit, path in sorted(source.textures.items()):
         material.textures[unit] = TextureBinding(str(path), path=path)
     return material
 
 
-def from_library(project: Project, library: str, node: Material) -> RenderMaterial:
-    """The material that a library file defines (docs/format.md, 6.8)."""
-    material = default_material(project, node.name or "")
+def make_library_material(project: Project, library: str, node: Material) -> RenderMaterial:
+    """Make the material that a library file defines (docs/format.md, 6.8)."""
+    material = make_default_material(project, node.name or "")
     material.library = library
     if node.color is not None:
         for name in node.color.settings:
@@ -165,12 +169,12 @@ def from_library(project: Project, library: str, node: Material) -> RenderMateri
     for unit in node.textures:
         if unit.name is not None and unit.UNIT is not None:
             material.textures[unit.UNIT] = TextureBinding(
-                qualified(unit.name, library), parts_of(unit.settings)
+                qualified(unit.name, library), list_parts(unit.settings)
             )
     for image in node.imageTextures:
         if image.texture is not None and image.UNIT is not None:
             material.images[image.UNIT] = ImageBinding(
-                qualified(image.texture, library), parts_of(image.settings)
+                qualified(image.texture, library), list_parts(image.settings)
             )
     for images in node.arraysOfImageTexture:
         _bind_images(project, material, library, images)
@@ -190,7 +194,7 @@ def from_library(project: Project, library: str, node: Material) -> RenderMateri
         material.state = {name: project.value(state, "STATE", name) for name in state.settings}
     if node.shader is not None and node.shader.name:
         material.program = (library, node.shader.name)
-        material.uniforms = uniform_sources(node.shader.values, library)
+        material.uniforms = list_uniform_sources(node.shader.values, library)
     return material
 
 
@@ -200,18 +204,18 @@ def _bind_images(
     full = qualified(node.textureArray or "", library)
     array = project.names("texture array").get(full)
     if isinstance(array, ArrayOfTextures) and node.FIRST_UNIT is not None:
-        for index in range(texture_count(project, array)):
-            binding = ImageBinding(f"{full}_{index}", parts_of(node.settings))
+        for index in range(count_textures(project, array)):
+            binding = ImageBinding(f"{full}_{index}", list_parts(node.settings))
             material.images[node.FIRST_UNIT + index] = binding
-        material.image_arrays.append(units(node.FIRST_UNIT, texture_count(project, array)))
+        material.image_arrays.append(units(node.FIRST_UNIT, count_textures(project, array)))
 
 
 def units(first: int, count: int) -> tuple[int, ...]:
     return tuple(range(first, first + count))
 
 
-def texture_count(project: Project, array: ArrayOfTextures) -> int:
-    """How many textures an array has."""
+def count_textures(project: Project, array: ArrayOfTextures) -> int:
+    """Return the number of textures of an array."""
     return int(project.value(array, "ARRAY_OF_TEXTURES", "TEXTURE_COUNT")[0])
 
 
@@ -222,6 +226,6 @@ def _bind_array(
     array = project.names("texture array").get(full)
     if not isinstance(array, ArrayOfTextures) or first is None:
         return
-    for index in range(texture_count(project, array)):
+    for index in range(count_textures(project, array)):
         material.textures[first + index] = TextureBinding(f"{full}_{index}")
-    material.texture_arrays.append(units(first, texture_count(project, array)))
+    material.texture_arrays.append(units(first, count_textures(project, array)))

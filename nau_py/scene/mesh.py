@@ -26,23 +26,24 @@ class Group:
 
 @dataclass(slots=True)
 class Mesh:
-    """``attributes`` maps names (docs/format.md, 8.4) to float32 arrays of shape (n, 4).
+    """A mesh in object space.
 
-    Object space. Row i of every attribute belongs to vertex i.
+    ``attributes`` maps names (docs/format.md, 8.4) to float32 arrays of shape (n, 4). Row i of each
+    belongs to vertex i.
     """
 
     attributes: dict[str, F32]
     groups: list[Group]
     primitive: str = "TRIANGLES"
     buffers: dict[str, str] = field(default_factory=dict)
-    """Attributes (and ``index``) that live in GPU buffers, by qualified name; such a mesh has no
+    """Qualified names of GPU buffers by attribute, and of ``index``. A mesh with buffers has no
     vertices of its own."""
     adjacency: bool = False
-    """Whether geometry shaders see each triangle's neighbours."""
+    """True if geometry shaders see the neighbours of each triangle."""
     version: int = 0
-    """Grows when positions change: animated meshes only."""
+    """Number of changes of the positions, for animated meshes."""
     poses: PoseTrack | None = None
-    """Pose animation, which a copy of the mesh does not have."""
+    """Pose animation. Copies of the mesh do not have it."""
 
     @property
     def positions(self) -> F32:
@@ -68,10 +69,10 @@ class SceneObject:
     matrix: F64 = field(default_factory=lambda: np.eye(4))
 
 
-def bounding_box(objects: Sequence[SceneObject]) -> tuple[F64, F64]:
-    """The lowest and highest x, y, z, world space, of the boxes about the objects' meshes.
+def compute_bounding_box(objects: Sequence[SceneObject]) -> tuple[F64, F64]:
+    """Compute the lowest and highest x, y, z, world space, of the boxes around the meshes.
 
-    Of no vertices at all it is the origin.
+    Without vertices both are the origin.
     """
     corners = []
     for item in objects:
@@ -89,7 +90,7 @@ def bounding_box(objects: Sequence[SceneObject]) -> tuple[F64, F64]:
 
 
 def pad4(values: NDArray[np.floating], w: float) -> F32:
-    """(n, 2 or 3) to float32 (n, 4): missing middle components 0, the last one ``w``."""
+    """Pad (n, 2 or 3) to float32 (n, 4): missing middle components are 0, the last is ``w``."""
     result = np.zeros((len(values), 4), np.float32)
     result[:, : values.shape[1]] = values
     result[:, 3] = w
@@ -99,7 +100,7 @@ def pad4(values: NDArray[np.floating], w: float) -> F32:
 def transform_mesh(mesh: Mesh, matrix: F64) -> Mesh:
     """Bake ``matrix`` into a copy: positions, and normals by the inverse transpose.
 
-    Tangents are left alone, as Nau does (docs/format.md, 13.4 #83).
+    Tangents are not changed, as in Nau (docs/format.md, 13.4 #83).
     """
     attributes = dict(mesh.attributes)
     points = mesh.positions.astype(np.float64) @ matrix.T
@@ -108,19 +109,19 @@ def transform_mesh(mesh: Mesh, matrix: F64) -> Mesh:
         linear = matrix[:3, :3]
         inverse = np.linalg.inv(linear) if abs(np.linalg.det(linear)) > 1e-30 else linear
         normals = mesh.attributes["normal"][:, :3].astype(np.float64) @ inverse
-        attributes["normal"] = pad4(normalized(normals), 0.0)
+        attributes["normal"] = pad4(normalize(normals), 0.0)
     return Mesh(attributes, mesh.groups, mesh.primitive, adjacency=mesh.adjacency)
 
 
-def normalized(vectors: NDArray[np.floating]) -> F64:
-    """Unit vectors, float64 (n, 3); zero vectors stay zero."""
+def normalize(vectors: NDArray[np.floating]) -> F64:
+    """Scale vectors to length 1, float64 (n, 3); zero vectors stay zero."""
     wide = vectors.astype(np.float64)
     length = np.linalg.norm(wide, axis=-1, keepdims=True)
     return wide / np.where(length > 0, length, 1.0)
 
 
-def merge(meshes: list[Mesh]) -> Mesh:
-    """One mesh of all: groups of equal material are joined, missing attributes filled with 0."""
+def merge_meshes(meshes: list[Mesh]) -> Mesh:
+    """Merge meshes: join groups of equal material, and fill missing attributes with 0."""
     if len(meshes) == 1:
         return meshes[0]
     names = list(dict.fromkeys(name for mesh in meshes for name in mesh.attributes))
@@ -145,8 +146,8 @@ def merge(meshes: list[Mesh]) -> Mesh:
     return Mesh(attributes, groups, meshes[0].primitive, adjacency=meshes[0].adjacency)
 
 
-def triangle_tangents(positions: F32, uv: F32, triangles: U32) -> F32:
-    """Per-vertex tangents along u, float32 (n, 4), w = 0; zero where uv is degenerate."""
+def compute_tangents(positions: F32, uv: F32, triangles: U32) -> F32:
+    """Compute the tangents of vertices along u, float32 (n, 4), w = 0; zero for degenerate uv."""
     p = positions[:, :3].astype(np.float64)[triangles]
     t = uv[:, :2].astype(np.float64)[triangles]
     e1, e2 = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
@@ -160,4 +161,4 @@ def triangle_tangents(positions: F32, uv: F32, triangles: U32) -> F32:
             total[:, axis] += np.bincount(
                 triangles[:, corner], tangent[:, axis], minlength=len(positions)
             )
-    return pad4(normalized(total), 0.0)
+    return pad4(normalize(total), 0.0)

@@ -1,4 +1,4 @@
-"""Names of materials that models bring, read without building any geometry."""
+"""Names of the materials of models, read without building geometry."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from nau_py.scene.readers.mtl import load_mtl
 _LIBRARY = re.compile(rb"^[ \t]*m\w*[ \t]+(.+?)[ \t\r]*$", re.MULTILINE)
 
 
-def default_material_names(project: Project) -> frozenset[str] | None:
-    """Names in the default library: built in, of primitives, and of OBJ models.
+def list_default_materials(project: Project) -> frozenset[str] | None:
+    """List the names in the default library: built in, of primitives, and of OBJ models.
 
-    None where a model is in another format, whose names only loading it tells.
+    Return None if a model has another format, because only loading it gives its names.
     """
     names = set(project.default_materials()) | {PRIMITIVE_MATERIAL}
     for scene in project.assets.scenes:

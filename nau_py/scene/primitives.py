@@ -12,7 +12,7 @@ from nau_py.scene.readers.model_material import QUAD_MATERIAL
 _AXIS_MATERIALS = ("__Emission Red", "__Emission Green", "__Emission Blue")
 
 
-def _mesh(
+def _make_mesh(
     position: F32, normal: F32, uv: F32, tangent: F32, indices: object, material: str
 ) -> Mesh:
     attributes = {
@@ -24,8 +24,8 @@ def _mesh(
     return Mesh(attributes, [Group(material, np.asarray(indices, np.uint32).reshape(-1, 3))])
 
 
-def box(material: str) -> Mesh:
-    """The cube -1..1 with 24 vertices, per-face normals and texture coordinates."""
+def make_box(material: str) -> Mesh:
+    """Make the cube -1..1 with 24 vertices, per-face normals and texture coordinates."""
     positions: list[F64] = []
     normals: list[F64] = []
     tangents: list[F64] = []
@@ -45,16 +45,16 @@ def box(material: str) -> Mesh:
                 tangents.append(right)
             indices += [base, base + 1, base + 2, base, base + 2, base + 3]
     arrays = [np.array(a, np.float32) for a in (positions, normals, uvs, tangents)]
-    return _mesh(arrays[0], arrays[1], arrays[2], arrays[3], indices, material)
+    return _make_mesh(arrays[0], arrays[1], arrays[2], arrays[3], indices, material)
 
 
-def square(material: str) -> Mesh:
-    """The plane y = 0, x and z in -1..1, normal +y."""
+def make_square(material: str) -> Mesh:
+    """Make the plane y = 0, x and z in -1..1, normal +y."""
     corners = np.array([(-1, -1), (-1, 1), (1, 1), (1, -1)], np.float32)
     position = np.stack([corners[:, 0], np.zeros(4), corners[:, 1]], axis=1).astype(np.float32)
     normal = np.tile(np.array([0, 1, 0], np.float32), (4, 1))
     tangent = np.tile(np.array([0, 0, -1], np.float32), (4, 1))
-    return _mesh(
+    return _make_mesh(
         position,
         normal,
         ((corners + 1) / 2).astype(np.float32),
@@ -64,8 +64,8 @@ def square(material: str) -> Mesh:
     )
 
 
-def sphere(slices: int, stacks: int, material: str) -> Mesh:
-    """The unit sphere with (slices + 1)(stacks + 1) vertices."""
+def make_sphere(slices: int, stacks: int, material: str) -> Mesh:
+    """Make the unit sphere with (slices + 1)(stacks + 1) vertices."""
     i, j = np.meshgrid(np.arange(stacks + 1), np.arange(slices + 1), indexing="ij")
     b = (i / stacks - 0.5) * np.pi
     a = j / slices * 2 * np.pi
@@ -78,11 +78,11 @@ def sphere(slices: int, stacks: int, material: str) -> Mesh:
         [corner, corner + 1, corner + width + 1, corner, corner + width + 1, corner + width], axis=1
     )
     flat = [x.reshape(-1, x.shape[-1]).astype(np.float32) for x in (position, uv, tangent)]
-    return _mesh(flat[0], flat[0], flat[1], flat[2], indices, material)
+    return _make_mesh(flat[0], flat[0], flat[1], flat[2], indices, material)
 
 
-def grid(divisions: int, length: float, material: str) -> Mesh:
-    """(divisions + 1)² vertices in the xz plane, centred, of side ``length``."""
+def make_grid(divisions: int, length: float, material: str) -> Mesh:
+    """Make a grid of (divisions + 1)² vertices in the xz plane, centred, of side ``length``."""
     rows, columns = np.meshgrid(np.arange(divisions + 1), np.arange(divisions + 1), indexing="ij")
     i, j = rows.reshape(-1), columns.reshape(-1)
     half = length / 2
@@ -96,11 +96,11 @@ def grid(divisions: int, length: float, material: str) -> Mesh:
     indices = np.stack(
         [corner, corner + width, corner + width + 1, corner, corner + width + 1, corner + 1], axis=1
     )
-    return _mesh(position, normal, uv, tangent, indices, material)
+    return _make_mesh(position, normal, uv, tangent, indices, material)
 
 
-def axis(material: str | None) -> Mesh:
-    """Three lines -1..1 along x, y and z; ``material`` replaces only the first one's."""
+def make_axis(material: str | None) -> Mesh:
+    """Make three lines -1..1 along x, y and z; ``material`` replaces that of the first only."""
     names = (material or _AXIS_MATERIALS[0], *_AXIS_MATERIALS[1:])
     ends = np.array([sign * np.eye(3)[k] for k in range(3) for sign in (-1, 1)])
     groups = [
@@ -110,8 +110,8 @@ def axis(material: str | None) -> Mesh:
 
 
 @lru_cache(maxsize=1)
-def quad() -> Mesh:
-    """The clip-space quad of a quad pass: z = -1, uv 0..1 from the lower left, normals zero."""
+def make_quad() -> Mesh:
+    """Make the quad of a quad pass: clip space, z = -1, uv 0..1 from the lower left, normals 0."""
     corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)
     position = np.column_stack([corners * 2 - 1, np.full(4, -1.0)])
     attributes = {

@@ -5,21 +5,21 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.scene.mesh import F64, normalized
+from nau_py.scene.mesh import F64, normalize
 
 CREASE = 0.01
 """Facets that share a vertex are smoothed when the dot product of their normals exceeds this."""
 
 
-def facet_normals(points: F64, triangles: NDArray[np.integer]) -> F64:
-    """Unit facet normals, float64 (m, 3); zero for degenerate triangles."""
+def compute_facet_normals(points: F64, triangles: NDArray[np.integer]) -> F64:
+    """Compute unit normals of facets, float64 (m, 3); zero for degenerate triangles."""
     a, b, c = (points[triangles[:, i]] for i in range(3))
-    return normalized(np.cross(b - a, c - a))
+    return normalize(np.cross(b - a, c - a))
 
 
-def smooth_normals(points: F64, triangles: NDArray[np.integer]) -> F64:
-    """Per-corner unit normals, float64 (3m, 3), corners in triangle order."""
-    facets = facet_normals(points, triangles)
+def compute_smooth_normals(points: F64, triangles: NDArray[np.integer]) -> F64:
+    """Compute unit normals of corners, float64 (3m, 3), in the order of the triangles."""
+    facets = compute_facet_normals(points, triangles)
     corner_vertex = triangles.reshape(-1)
     corner_facet = np.repeat(np.arange(len(triangles)), 3)
     order = np.argsort(corner_vertex, kind="stable")
@@ -35,5 +35,5 @@ def smooth_normals(points: F64, triangles: NDArray[np.integer]) -> F64:
         near = valid & (np.einsum("ij,ij->i", own, neighbour) > CREASE)
         total[near] += neighbour[near]
     result = np.empty_like(total)
-    result[order] = normalized(total)
+    result[order] = normalize(total)
     return result

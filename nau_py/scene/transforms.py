@@ -23,7 +23,7 @@ def scaling(vector: Sequence[float]) -> F64:
 
 
 def rotation(axis_angle: Sequence[float]) -> F64:
-    """Right-handed rotation about ``axis_angle[:3]`` by ``axis_angle[3]`` degrees.
+    """Make a right-handed rotation about ``axis_angle[:3]`` by ``axis_angle[3]`` degrees.
 
     A zero axis gives the identity, as in Nau.
     """
@@ -41,14 +41,16 @@ def rotation(axis_angle: Sequence[float]) -> F64:
     return matrix
 
 
-def transform_of(
+def compose_transform(
     project: Project,
     node: Configured,
     type_: str,
     instead: Mapping[str, Sequence[float]] | None = None,
 ) -> F64:
-    """The matrix of SCALE, TRANSLATE and ROTATE in the written TRANSFORM_ORDER. ``instead``:
-    values in the place of the file's."""
+    """Compose SCALE, TRANSLATE and ROTATE in the written TRANSFORM_ORDER, float64 (4, 4).
+
+    ``instead``: values that replace those of the file.
+    """
 
     def numbers(name: str) -> list[float]:
         if instead and name in instead:
@@ -68,7 +70,7 @@ def transform_of(
 
 
 def perspective(fov_degrees: float, aspect: float, near: float, far: float) -> F64:
-    """OpenGL perspective projection; ``fov_degrees`` is vertical (docs/format.md, 9.12)."""
+    """Make an OpenGL perspective projection; ``fov_degrees`` is vertical (docs/format.md, 9.12)."""
     f = 1.0 / tan(radians(fov_degrees) / 2)
     matrix = np.zeros((4, 4))
     matrix[0, 0] = f / aspect
@@ -82,7 +84,7 @@ def perspective(fov_degrees: float, aspect: float, near: float, far: float) -> F
 def orthographic(
     left: float, right: float, bottom: float, top: float, near: float, far: float
 ) -> F64:
-    """glOrtho (OpenGL 2.1 reference page)."""
+    """Make the matrix of glOrtho (OpenGL 2.1 reference page)."""
     matrix = np.eye(4)
     for row, (low, high) in enumerate(((left, right), (bottom, top), (-far, -near))):
         matrix[row, row] = 2 / (high - low)
@@ -93,12 +95,12 @@ def orthographic(
 
 
 def to_unit_cube() -> F64:
-    """Clip space to 0..1: T(0.5)·S(0.5)."""
+    """Make the matrix from clip space to 0..1: T(0.5)·S(0.5)."""
     return translation((0.5, 0.5, 0.5)) @ scaling((0.5, 0.5, 0.5))
 
 
 def inverse(matrix: F64) -> F64:
-    """The inverse; the matrix itself where it is singular, as in Nau (9.12)."""
+    """Invert a matrix; return a singular one as it is, as Nau does (9.12)."""
     try:
         return np.asarray(np.linalg.inv(matrix), np.float64)
     except np.linalg.LinAlgError:

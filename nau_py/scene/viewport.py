@@ -12,7 +12,7 @@ from nau_py.model.viewport import Viewport
 class Rect:
     """A rectangle in pixels, lower left corner first, with a clear colour.
 
-    Fractions go to OpenGL unrounded.
+    OpenGL gets fractions of pixels unrounded.
     """
 
     x: float
@@ -31,8 +31,10 @@ class Rect:
         return int(self.x), int(self.y), int(self.width), int(self.height)
 
 
-def viewport_rect(project: Project, viewport: Viewport | None, window: tuple[int, int]) -> Rect:
-    """The rectangle of a viewport in a window of ``window`` (width, height) pixels."""
+def compute_viewport_rect(
+    project: Project, viewport: Viewport | None, window: tuple[int, int]
+) -> Rect:
+    """Compute the rectangle of a viewport in a window of ``window`` (width, height) pixels."""
     width, height = float(window[0]), float(window[1])
     if viewport is None:
         return Rect(0.0, 0.0, width, height)

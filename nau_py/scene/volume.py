@@ -11,18 +11,18 @@ from numpy.typing import NDArray
 from nau_py.scene.images import ImageError
 
 TYPES = {"unsigned_char": ">u1", "unsigned_short": ">u2", "float": ">f4"}
-"""Data types that a texture can hold, as they lie in binary files."""
+"""Data types that a texture can hold, and their form in binary files."""
 
 
 def is_volume(path: Path) -> bool:
-    """Whether the file holds a volume, by its name."""
+    """Decide by the file's name if it holds a volume."""
     return path.suffix.lower() == ".vtk"
 
 
 def load_volume(path: Path) -> NDArray[Any]:
-    """Texels (depth, height, width), uint8, uint16 or float32: x runs fastest, as in the file.
+    """Load texels (depth, height, width), uint8, uint16 or float32: x runs fastest.
 
-    One scalar a point of a data set ``STRUCTURED_POINTS``. Raises
+    The data set must be ``STRUCTURED_POINTS`` with one scalar per point. Raises
     :class:`~nau_py.scene.images.ImageError`.
     """
     try:
@@ -32,7 +32,7 @@ def load_volume(path: Path) -> NDArray[Any]:
     lines = data.split(b"\n", 2)
     if len(lines) < 3 or not lines[0].lower().startswith(b"# vtk"):
         raise ImageError("it does not begin as a VTK file does, with '# vtk DataFile Version'")
-    header, rest = _header(lines[2])
+    header, rest = _split_header(lines[2])
     if header.get("DATASET") != ["STRUCTURED_POINTS"]:
         held = " ".join(header.get("DATASET", ["none"]))
         raise ImageError(f"its data set is '{held}'; STRUCTURED_POINTS makes a texture")
@@ -55,8 +55,8 @@ def load_volume(path: Path) -> NDArray[Any]:
     return found.astype(dtype.newbyteorder("=")).reshape(depth, height, width)
 
 
-def _header(data: bytes) -> tuple[dict[str, list[str]], bytes]:
-    """The lines up to LOOKUP_TABLE by their first word; ``_`` is the encoding. What follows."""
+def _split_header(data: bytes) -> tuple[dict[str, list[str]], bytes]:
+    """Split off the lines up to LOOKUP_TABLE, by first word; ``_`` is the encoding."""
     found: dict[str, list[str]] = {}
     line, _, rest = data.partition(b"\n")
     found["_"] = line.decode("latin-1").split()

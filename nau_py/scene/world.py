@@ -1,4 +1,4 @@
-"""Everything that a project draws, at a moment: scenes, materials, cameras, lights."""
+"""The world that a project draws, at a moment: scenes, materials, cameras, lights."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from nau_py.diagnostics.suggest import format_names
 from nau_py.model.linked import Project
 from nau_py.model.scene import Scene
 from nau_py.scene.build import SceneBuilder
-from nau_py.scene.camera import CameraState, camera_state
+from nau_py.scene.camera import CameraState, make_camera_state
 from nau_py.scene.events import EventSystem
-from nau_py.scene.frustum import frustum_corners, frustum_mesh
-from nau_py.scene.lights import LightState, light_state
+from nau_py.scene.frustum import compute_frustum_corners, make_frustum_mesh
+from nau_py.scene.lights import LightState, make_light_state
 from nau_py.scene.mapping import MaterialTable
-from nau_py.scene.material import default_material, from_model
-from nau_py.scene.mesh import F32, F64, SceneObject, bounding_box
-from nau_py.scene.transforms import inverse, transform_of
-from nau_py.scene.viewport import Rect, viewport_rect
+from nau_py.scene.material import make_default_material, make_model_material
+from nau_py.scene.mesh import F32, F64, SceneObject, compute_bounding_box
+from nau_py.scene.transforms import compose_transform, inverse
+from nau_py.scene.viewport import Rect, compute_viewport_rect
 
 DEFAULT_NAME = "__nauDefault"
 
@@ -25,7 +25,7 @@ DEFAULT_NAME = "__nauDefault"
 class World:
     """The world of a project. Scenes are loaded once, in file order; materials follow them.
 
-    ``diagnostics`` holds what model files had wrong.
+    ``diagnostics`` holds the faults of model files.
     """
 
     def __init__(self, project: Project, window: tuple[int, int]) -> None:
@@ -47,31 +47,31 @@ class World:
             self.animate,
         )  # fmt: skip
         for material in builder.materials:
-            self.materials.add(from_model(project, material))
+            self.materials.add(make_model_material(project, material))
         for name in builder.new_materials:
-            self.materials.add(default_material(project, name))
+            self.materials.add(make_default_material(project, name))
         self.diagnostics: list[Diagnostic] = builder.diagnostics
         self.renderer_values: dict[str, tuple[float, ...]] = {}
-        """RENDERER attributes that scripts have set."""
+        """RENDERER attributes set by scripts."""
         self.moved: frozenset[str] = frozenset()
-        """Names of objects that have been moved."""
+        """Names of the objects that have moved."""
         self.moves = 0
-        """How often anything was moved."""
+        """Number of moves of any object."""
         self._cameras: dict[str, CameraState] = {}
         self._frusta: dict[str, SceneObject] = {}
         for camera in project.assets.cameras:
             if camera.name and camera.name not in self._cameras:
-                self._cameras[camera.name] = camera_state(project, camera, camera.name)
-        self._cameras.setdefault(DEFAULT_NAME, camera_state(project, None, DEFAULT_NAME))
+                self._cameras[camera.name] = make_camera_state(project, camera, camera.name)
+        self._cameras.setdefault(DEFAULT_NAME, make_camera_state(project, None, DEFAULT_NAME))
         self._lights: dict[str, LightState] = {}
         for light in project.assets.lights:
             if light.name:
                 nodes = [other for other in project.assets.lights if other.name == light.name]
-                self._lights[light.name] = light_state(project, nodes, light.name)
-        self._lights.setdefault(DEFAULT_NAME, light_state(project, [], DEFAULT_NAME))
+                self._lights[light.name] = make_light_state(project, nodes, light.name)
+        self._lights.setdefault(DEFAULT_NAME, make_light_state(project, [], DEFAULT_NAME))
 
     def objects(self, names: list[str]) -> list[SceneObject]:
-        """The objects of the named scenes, in that order; a camera's name means its frustum."""
+        """List the objects of the named scenes, in order; a camera's name means its frustum."""
         found = []
         for name in names:
             found += self.scenes.get(name, [])
@@ -82,9 +82,9 @@ class World:
     def _frustum(self, camera: CameraState) -> SceneObject:
         aspect = self.viewport(camera.viewport).aspect
         if camera.name not in self._frusta:
-            self._frusta[camera.name] = SceneObject(camera.name, frustum_mesh(camera, aspect))
+            self._frusta[camera.name] = SceneObject(camera.name, make_frustum_mesh(camera, aspect))
         found = self._frusta[camera.name]
-        corners = frustum_corners(camera, aspect)
+        corners = compute_frustum_corners(camera, aspect)
         if not np.array_equal(corners, found.mesh.positions):
             found.mesh.attributes["position"] = corners
             found.mesh.version += 1
@@ -92,9 +92,9 @@ class World:
         return found
 
     def move(self, name: str, matrix: F64) -> None:
-        """Put the objects called ``name`` where ``matrix`` says: object to world, (4, 4).
+        """Set the object-to-world matrix, (4, 4), of the objects called ``name``.
 
-        Raises ValueError for a name that no object has, or a matrix that is none.
+        Raises ValueError for an unknown name, and for a matrix of another shape or not finite.
         """
         found = [o for objects in self.scenes.values() for o in objects if o.name == name]
         wide = np.asarray(matrix, np.float64)
@@ -109,33 +109,33 @@ class World:
         self.moves += 1
 
     def place(self, scene: str, attribute: str, values: tuple[float, ...]) -> None:
-        """Set TRANSLATE or ROTATE of a scene, four numbers; its objects follow."""
+        """Set TRANSLATE or ROTATE of a scene, four numbers, and move its objects."""
         node = self._nodes.get(scene)
         if node is None:
             return
         instead = self._moving.setdefault(scene, {})
-        before = transform_of(self.project, node, "SCENE", instead)
+        before = compose_transform(self.project, node, "SCENE", instead)
         instead[attribute] = values
-        change = transform_of(self.project, node, "SCENE", instead) @ inverse(before)
-        self._changed(scene, [(o, change @ o.matrix) for o in self.scenes[scene]])
+        change = compose_transform(self.project, node, "SCENE", instead) @ inverse(before)
+        self._mark_moved(scene, [(o, change @ o.matrix) for o in self.scenes[scene]])
 
     def scene_value(self, scene: str, attribute: str) -> F64 | None:
-        """A SCENE attribute, flat: matrices column after column, boxes in world space.
+        """Return a SCENE attribute, flat: matrices column after column, boxes in world space.
 
-        A box is that of the eight corners of the box of each mesh, as in Nau
-        (``boundingBox.cpp``, ``setTransform``), so around a rotated object it is not the smallest.
+        A box bounds the eight corners of the box of each mesh, as in Nau (``boundingBox.cpp``,
+        ``setTransform``), so around a rotated object it is not the smallest.
         """
         node = self._nodes.get(scene)
         if node is None:
             return None
         moving = self._moving.get(scene, {})
         if attribute == "TRANSFORM":
-            return transform_of(self.project, node, "SCENE", moving).T.reshape(-1)
+            return compose_transform(self.project, node, "SCENE", moving).T.reshape(-1)
         if attribute == "TRIANGLE_COUNT":
             groups = [g for o in self.scenes[scene] for g in o.mesh.groups]
             return np.array([float(sum(len(g.indices) for g in groups))])
         if attribute.startswith("BB_"):
-            low, high = bounding_box(self.scenes[scene])
+            low, high = compute_bounding_box(self.scenes[scene])
             boxes = {"BB_MIN": low, "BB_MAX": high, "BB_CENTER": (low + high) / 2}
             return boxes.get(attribute)
         parts = moving.get(attribute) or self.project.value(node, "SCENE", attribute)
@@ -143,7 +143,7 @@ class World:
         return np.array(numbers) if numbers else None
 
     def animate(self, scene: str, fraction: float) -> None:
-        """Put the pose animation of a scene at ``fraction`` of its length."""
+        """Set the pose animation of a scene to ``fraction`` of its length."""
         node = self._nodes.get(scene)
         if node is None or node.type != "ScenePoses":
             return
@@ -156,9 +156,9 @@ class World:
             moved[:, :3] += mesh.poses.offset(fraction * mesh.poses.length)
             mesh.attributes["position"] = moved
             mesh.version += 1
-        self._changed(scene, [(o, o.matrix) for o in self.scenes[scene]])
+        self._mark_moved(scene, [(o, o.matrix) for o in self.scenes[scene]])
 
-    def _changed(self, scene: str, places: list[tuple[SceneObject, F64]]) -> None:
+    def _mark_moved(self, scene: str, places: list[tuple[SceneObject, F64]]) -> None:
         for item, matrix in places:
             item.matrix = matrix
         self.moved |= {item.name for item, _ in places}
@@ -168,13 +168,13 @@ class World:
         return self._cameras.get(name or DEFAULT_NAME, self._cameras[DEFAULT_NAME])
 
     def add_camera(self, camera: CameraState) -> None:
-        """Add a camera that a pass makes (a depth map's light camera)."""
+        """Add a camera that a pass makes, as the light camera of a depth map."""
         self._cameras[camera.name] = camera
 
     def light(self, name: str) -> LightState:
         return self._lights.get(name, self._lights[DEFAULT_NAME])
 
     def viewport(self, name: str | None) -> Rect:
-        """The rectangle of a viewport in the window; the whole window for None."""
+        """Compute the rectangle of a viewport in the window; the whole window for None."""
         nodes = {v.name: v for v in self.project.assets.viewports}
-        return viewport_rect(self.project, nodes.get(name), self.window)
+        return compute_viewport_rect(self.project, nodes.get(name), self.window)

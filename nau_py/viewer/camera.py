@@ -8,7 +8,7 @@ from nau_py.model.camera import Camera
 from nau_py.model.linked import Project
 from nau_py.model.node import Setting
 from nau_py.model.values import Scalar
-from nau_py.scene.camera import CameraState, camera_state
+from nau_py.scene.camera import CameraState, make_camera_state
 from nau_py.viewer.controls import Values, parts_of
 
 
@@ -31,7 +31,7 @@ def camera_with(project: Project, name: str, values: Values) -> CameraState | No
         type_, context, component = parts_of(key)
         if type_ == "CAMERA" and context == name:
             _put(changed, component, parts)
-    return camera_state(project, changed, name)
+    return make_camera_state(project, changed, name)
 
 
 def _put(camera: Camera, component: str, parts: tuple[Scalar, ...]) -> None:

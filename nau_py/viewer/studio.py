@@ -34,7 +34,7 @@ from nau_py.reporting.target_picture import difference, encoded, shown, thumbnai
 from nau_py.run.frame import Frame
 from nau_py.run.renderer import Renderer
 from nau_py.run.used_files import PROGRAM, SHADER
-from nau_py.scene.mesh import bounding_box
+from nau_py.scene.mesh import compute_bounding_box
 from nau_py.viewer.camera import camera_with
 from nau_py.viewer.controls import COLOURS, Values, home, parts_of
 
@@ -250,7 +250,7 @@ class Studio:
         renderer = next(iter(self._cameras.values())).renderer
         world = renderer.session.world
         objects = [o for listed in world.scenes.values() for o in listed]
-        low, high = bounding_box(objects) if objects else (np.zeros(3), np.ones(3))
+        low, high = compute_bounding_box(objects) if objects else (np.zeros(3), np.ones(3))
         found: dict[str, dict[str, tuple[float, ...]]] = {}
         for name in world.materials.default_names():
             material = world.materials.get("__nau_material_lib", name)

@@ -88,7 +88,7 @@ def test_shared_edge_vertex() -> None:
     """Rays at edges and vertices of a closed mesh miss nothing."""
     from nau_py.scene import primitives
 
-    mesh = primitives.sphere(24, 16, "m")
+    mesh = primitives.make_sphere(24, 16, "m")
     made = geometry(mesh.positions[:, :3], mesh.groups[0].indices.tolist())
     rng = np.random.default_rng(4)
     edges = made.triangles[:, [0, 1]][rng.integers(0, len(made.triangles), RAYS)]

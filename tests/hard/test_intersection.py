@@ -81,7 +81,7 @@ def test_watertight_offset() -> None:
     """Embree's own case: a sphere about (148376, 1234, -223423), rays from inside: no miss."""
     from nau_py.scene import primitives
 
-    ball = primitives.sphere(64, 32, "m")
+    ball = primitives.make_sphere(64, 32, "m")
     matrix = np.eye(4)
     matrix[:3, 3] = (148376, 1234, -223423)
     made = gather_triangles([SceneObject("o", ball, matrix)])

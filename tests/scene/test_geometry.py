@@ -17,10 +17,10 @@ WRAP = '<project name="P"><assets>{}</assets></project>'
 @pytest.mark.parametrize(
     "mesh, area, volume",
     [
-        (primitives.box("m"), 24.0, 8.0),
-        (primitives.sphere(256, 256, "m"), 4 * np.pi, 4 / 3 * np.pi),
-        (primitives.square("m"), 4.0, None),
-        (primitives.grid(7, 3.0, "m"), 9.0, None),
+        (primitives.make_box("m"), 24.0, 8.0),
+        (primitives.make_sphere(256, 256, "m"), 4 * np.pi, 4 / 3 * np.pi),
+        (primitives.make_square("m"), 4.0, None),
+        (primitives.make_grid(7, 3.0, "m"), 9.0, None),
     ],
 )
 def test_primitives_have_their_area_and_face_outwards(

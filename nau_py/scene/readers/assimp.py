@@ -47,31 +47,33 @@ def load_assimp(path: Path, swap_yz: bool) -> Model:
         scene = assimp_py.import_file(str(path), _POST_PROCESS)
     except (RuntimeError, ValueError, OSError) as error:
         raise ModelError(f"cannot be read by Assimp: {error}") from None
-    materials = [_material(data, path) for data in scene.materials]
+    materials = [_convert_material(data, path) for data in scene.materials]
     names = [m.name for m in materials]
-    meshes = [_mesh(mesh, names, swap_yz) for mesh in scene.meshes]
+    meshes = [_convert_mesh(mesh, names, swap_yz) for mesh in scene.meshes]
     objects: list[SceneObject] = []
-    _walk(scene.root_node, np.eye(4), meshes, objects)
+    _collect_objects(scene.root_node, np.eye(4), meshes, objects)
     if not objects:
         raise ModelError("holds no triangle mesh")
     return objects, materials
 
 
-def _walk(node: Any, parent: F64, meshes: list[Mesh | None], objects: list[SceneObject]) -> None:
+def _collect_objects(
+    node: Any, parent: F64, meshes: list[Mesh | None], objects: list[SceneObject]
+) -> None:
     matrix = parent @ np.array(node.transformation, np.float64)
     for index in node.mesh_indices:
         mesh = meshes[index]
         if mesh is not None:
             objects.append(SceneObject("default", mesh, matrix))
     for child in node.children:
-        _walk(child, matrix, meshes, objects)
+        _collect_objects(child, matrix, meshes, objects)
 
 
-def _array(view: Any, width: int) -> F32:
+def _copy_array(view: Any, width: int) -> F32:
     return np.frombuffer(view, np.float32).reshape(-1, width).copy()
 
 
-def _mesh(data: Any, materials: list[str], swap_yz: bool) -> Mesh | None:
+def _convert_mesh(data: Any, materials: list[str], swap_yz: bool) -> Mesh | None:
     if data.num_indices != 3 * data.num_faces:
         return None
     turn = _SWAP_YZ if swap_yz else np.eye(4)
@@ -84,17 +86,17 @@ def _mesh(data: Any, materials: list[str], swap_yz: bool) -> Mesh | None:
     )
     for name, view, w in sources:
         if view is not None and len(view):
-            turned = _array(view, 3) @ turn[:3, :3].T
+            turned = _copy_array(view, 3) @ turn[:3, :3].T
             attributes[name] = pad4(turned, w)
     if data.texcoords:
         width = int(data.num_uv_components[0])
-        uv = _array(data.texcoords[0], width)[:, :2]
+        uv = _copy_array(data.texcoords[0], width)[:, :2]
         attributes["texCoord0"] = pad4(uv, 1.0)
     indices = np.frombuffer(data.indices, np.uint32).reshape(-1, 3).copy()
     return Mesh(attributes, [Group(materials[data.material_index], indices)])
 
 
-def _material(data: dict[str, Any], path: Path) -> ModelMaterial:
+def _convert_material(data: dict[str, Any], path: Path) -> ModelMaterial:
     material = ModelMaterial(str(data.get("NAME") or "Default"))
     for key, name in _COLOURS.items():
         value = data.get(key)

@@ -1,4 +1,4 @@
-"""Materials as model files bring them."""
+"""Materials of model files, and the names of default ones."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from pathlib import Path
 from nau_py.model.attributes.color import COLOR
 
 QUAD_MATERIAL = "__Quad"
-"""The material of a quad pass that names none."""
+"""Material of a quad pass that names none."""
 OBJ_MATERIAL = "DefaultOBJMaterial"
-"""The material of faces in an OBJ file without a material library."""
+"""Material of faces in an OBJ file without a material library."""
 PRIMITIVE_MATERIAL = "__Light Grey"
-"""The material of built-in primitives that name none."""
+"""Material of built-in primitives that name none."""
 
 DEFAULT_COLOURS: dict[str, tuple[float, ...]] = {
     a.name: tuple(float(v) for v in a.default) for a in COLOR

@@ -14,7 +14,7 @@ _OTHER_MAP, _BUMP = 5, 1
 
 
 def load_mtl(obj: Path, name: str) -> list[ModelMaterial]:
-    """The materials of the library ``name`` that ``obj`` names. Raises :class:`ModelError`."""
+    """Load the material library ``name`` of the model ``obj``. Raises :class:`ModelError`."""
     found = resolve(obj.parent, name)
     if not found.exists:
         raise ModelError(f"names the material library '{name}', which does not exist")
@@ -27,14 +27,14 @@ def load_mtl(obj: Path, name: str) -> list[ModelMaterial]:
             materials.append(ModelMaterial(words[1] if len(words) > 1 else "", {"SHININESS": (0,)}))
         elif materials:
             try:
-                _mtl_line(materials[-1], words, found.best.parent)
+                _apply_line(materials[-1], words, found.best.parent)
             except (ValueError, IndexError):
                 text = " ".join(words)
                 raise ModelError(f"{found.best.name}:{number}: '{text}' holds no number") from None
     return materials
 
 
-def _mtl_line(material: ModelMaterial, words: list[str], folder: Path) -> None:
+def _apply_line(material: ModelMaterial, words: list[str], folder: Path) -> None:
     keyword = words[0]
     if keyword in _COLOURS:
         r, g, b = (float(w) for w in (words[1:4] if len(words) > 3 else [words[1]] * 3))
@@ -53,7 +53,7 @@ def _mtl_line(material: ModelMaterial, words: list[str], folder: Path) -> None:
 
 
 def read_lines(path: Path) -> list[bytes]:
-    """The lines of a model file, continued ones joined. Raises :class:`ModelError`."""
+    """Read the lines of a model file and join continued ones. Raises :class:`ModelError`."""
     try:
         data = path.read_bytes()
     except OSError as error:

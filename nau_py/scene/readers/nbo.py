@@ -16,14 +16,16 @@ from nau_py.scene.readers.registry import Model
 NO_TEXTURE = "<no texture>"
 TEXTURE_UNITS = 8
 LONGEST_STRING = 4096
-"""Bytes; a longer name means that the file is no NBO."""
+"""Upper bound in bytes; with a longer name the file is not an NBO."""
 
 
 class _Reader:
+    """A position in the bytes of a file, and the values that NBO files hold."""
+
     def __init__(self, data: bytes) -> None:
         self.data, self.at = data, 0
 
-    def take(self, size: int) -> bytes:
+    def read_bytes(self, size: int) -> bytes:
         if size < 0 or self.at + size > len(self.data):
             raise ModelError(f"it ends {self.at + size - len(self.data)} bytes early")
         part = self.data[self.at : self.at + size]
@@ -31,16 +33,16 @@ class _Reader:
         return part
 
     def u32(self) -> int:
-        return int(struct.unpack("<I", self.take(4))[0])
+        return int(struct.unpack("<I", self.read_bytes(4))[0])
 
     def floats(self, count: int) -> F32:
-        return np.frombuffer(self.take(4 * count), "<f4").astype(np.float32)
+        return np.frombuffer(self.read_bytes(4 * count), "<f4").astype(np.float32)
 
     def string(self) -> str:
         length = self.u32()
         if length > LONGEST_STRING:
             raise ModelError(f"a name of {length} bytes at byte {self.at}: it is no NBO file")
-        return self.take(length + 1)[:length].decode("utf-8", "replace")
+        return self.read_bytes(length + 1)[:length].decode("utf-8", "replace")
 
     def matrix(self) -> F64:
         return self.floats(16).astype(np.float64).reshape(4, 4).T
@@ -56,7 +58,7 @@ class _Reader:
     def indices(self) -> np.ndarray[tuple[int, ...], np.dtype[np.uint32]]:
         self.u32()
         count = self.u32()
-        values = np.frombuffer(self.take(4 * count), "<u4").astype(np.uint32)
+        values = np.frombuffer(self.read_bytes(4 * count), "<u4").astype(np.uint32)
         return values[: len(values) // 3 * 3].reshape(-1, 3)
 
 
@@ -69,20 +71,20 @@ def load_nbo(path: Path) -> Model:
         reader = _Reader(path.read_bytes())
     except OSError as problem:
         raise ModelError(str(problem)) from None
-    materials = [_material(reader, path) for _ in range(reader.u32())]
+    materials = [_read_material(reader, path) for _ in range(reader.u32())]
     if reader.string() == "OctreeByMatScene":
         reader.floats(6)
         reader.string()
         objects: list[SceneObject] = []
-        _node(reader, objects)
+        _read_node(reader, objects)
     else:
-        objects = _objects(reader)
+        objects = _read_objects(reader)
     for item in objects:
-        _check(item)
+        _check_object(item)
     return objects, materials
 
 
-def _material(reader: _Reader, path: Path) -> ModelMaterial:
+def _read_material(reader: _Reader, path: Path) -> ModelMaterial:
     made = ModelMaterial(reader.string())
     for name in ("AMBIENT", "SPECULAR", "DIFFUSE", "EMISSION"):
         made.colours[name] = tuple(float(v) for v in reader.floats(4))
@@ -94,7 +96,7 @@ def _material(reader: _Reader, path: Path) -> ModelMaterial:
     return made
 
 
-def _objects(reader: _Reader) -> list[SceneObject]:
+def _read_objects(reader: _Reader) -> list[SceneObject]:
     found: list[SceneObject] = []
     meshes: dict[str, Mesh] = {}
     for _ in range(reader.u32()):
@@ -114,7 +116,7 @@ def _objects(reader: _Reader) -> list[SceneObject]:
     return found
 
 
-def _node(reader: _Reader, found: list[SceneObject]) -> None:
+def _read_node(reader: _Reader, found: list[SceneObject]) -> None:
     reader.floats(12)
     for _ in range(reader.u32()):
         reader.string()
@@ -128,12 +130,12 @@ def _node(reader: _Reader, found: list[SceneObject]) -> None:
             SceneObject(name, Mesh(attributes, [Group(material, reader.indices())]), matrix)
         )
     children = reader.u32()
-    reader.take(8)
+    reader.read_bytes(8)
     for _ in range(children):
-        _node(reader, found)
+        _read_node(reader, found)
 
 
-def _check(item: SceneObject) -> None:
+def _check_object(item: SceneObject) -> None:
     if "position" not in item.mesh.attributes:
         raise ModelError(f"object '{item.name}' has no positions")
     count = item.mesh.vertex_count

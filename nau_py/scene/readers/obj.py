@@ -8,18 +8,18 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.scene.mesh import F32, U32, Group, Mesh, SceneObject, pad4, triangle_tangents
+from nau_py.scene.mesh import F32, U32, Group, Mesh, SceneObject, compute_tangents, pad4
 from nau_py.scene.readers.model_error import ModelError
 from nau_py.scene.readers.model_material import OBJ_MATERIAL, ModelMaterial
 from nau_py.scene.readers.mtl import load_mtl, read_lines
 from nau_py.scene.readers.obj_faces import I64, Counts, Triangles, read_faces
 from nau_py.scene.readers.registry import Model
-from nau_py.scene.smooth import smooth_normals
+from nau_py.scene.smooth import compute_smooth_normals
 
 
 @dataclass(slots=True)
 class _Source:
-    """The lines of an OBJ file by keyword, and what each face belongs to."""
+    """Lines of an OBJ file by keyword, and the group and material of each face."""
 
     rows: dict[bytes, list[bytes]] = field(default_factory=lambda: {b"v": [], b"vn": [], b"vt": []})
     faces: list[bytes] = field(default_factory=list)
@@ -28,7 +28,7 @@ class _Source:
     keys: list[tuple[str, str]] = field(default_factory=list)
     """(group, material) keys in order of use."""
     starts: list[int] = field(default_factory=list)
-    """The first face of each key."""
+    """Index of the first face of each key."""
     libraries: list[str] = field(default_factory=list)
 
     def count(self) -> Counts:
@@ -39,8 +39,8 @@ class _Source:
         self.starts.append(len(self.faces))
 
 
-def _numbers(rows: list[bytes], width: int, what: str) -> NDArray[np.float64]:
-    """The first ``width`` numbers after the keyword of each row, (n, width); short rows get 0."""
+def _parse_numbers(rows: list[bytes], width: int, what: str) -> NDArray[np.float64]:
+    """Parse the first ``width`` numbers of each row, float64 (n, width); fill short rows with 0."""
     if not rows:
         return np.zeros((0, width))
     split = [row.split()[1:] for row in rows]
@@ -52,7 +52,7 @@ def _numbers(rows: list[bytes], width: int, what: str) -> NDArray[np.float64]:
         raise ModelError(f"a '{what}' line holds something that is not a number: {error}") from None
 
 
-def _scan(lines: list[bytes]) -> _Source:
+def _sort_lines(lines: list[bytes]) -> _Source:
     """Sort lines by their first letter, as Nau does."""
     source = _Source()
     group, material = "default", OBJ_MATERIAL
@@ -97,30 +97,30 @@ def load_obj(path: Path) -> tuple[Mesh, list[ModelMaterial]]:
     Groups are ordered by Nau's ``<group>-<material>`` keys in byte order and joined by material.
     Raises :class:`~nau_py.scene.readers.model_error.ModelError`.
     """
-    source = _scan(read_lines(path))
+    source = _sort_lines(read_lines(path))
     materials = [m for name in source.libraries for m in load_mtl(path, name)]
     if not source.libraries:
         source.keys = [(group, OBJ_MATERIAL) for group, _ in source.keys]
     triangles = read_faces(source.faces, source.numbers, source.counts, source.count())
     if not len(triangles.corners):
         raise ModelError("holds no face")
-    return _build(source, triangles), materials
+    return _build_mesh(source, triangles), materials
 
 
-def _build(source: _Source, faces: Triangles) -> Mesh:
+def _build_mesh(source: _Source, faces: Triangles) -> Mesh:
     rows = source.rows
-    v = _numbers(rows[b"v"], 3, "v")
-    vt = _numbers(rows[b"vt"], 2, "vt")
-    vn = _numbers(rows[b"vn"], 3, "vn")
+    v = _parse_numbers(rows[b"v"], 3, "v")
+    vt = _parse_numbers(rows[b"vt"], 2, "vt")
+    vn = _parse_numbers(rows[b"vn"], 3, "vn")
     flat = faces.corners.reshape(-1, 3)
-    unique, inverse = _unique_corners(flat, (len(v), len(vt), len(vn)))
+    unique, inverse = _find_unique_corners(flat, (len(v), len(vt), len(vn)))
     triangles: U32 = inverse.reshape(-1, 3).astype(np.uint32)
     attributes: dict[str, F32] = {"position": pad4(v[unique[:, 0]], 1.0)}
     if len(vn):
         normals = np.vstack([vn, np.zeros((1, 3))])[unique[:, 2]]
         attributes["normal"] = pad4(normals, 0.0)
     else:
-        corner_normals = smooth_normals(v, faces.corners[:, :, 0])
+        corner_normals = compute_smooth_normals(v, faces.corners[:, :, 0])
         keyed = np.column_stack(
             [unique[inverse], (np.round(corner_normals, 5) + 0.0).view(np.int64)]
         )
@@ -134,14 +134,14 @@ def _build(source: _Source, faces: Triangles) -> Mesh:
     if len(vt):
         uv = np.vstack([vt, np.zeros((1, 2))])[unique[:, 1]]
         attributes["texCoord0"] = pad4(uv, 0.0)
-        attributes["tangent"] = triangle_tangents(
+        attributes["tangent"] = compute_tangents(
             attributes["position"], attributes["texCoord0"], triangles
         )
-    return Mesh(attributes, _groups(source, faces, triangles))
+    return Mesh(attributes, _group_triangles(source, faces, triangles))
 
 
-def _unique_corners(flat: I64, counts: tuple[int, int, int]) -> tuple[I64, I64]:
-    """Distinct (v, vt, vn) triples in order of first use, and the triple of each corner."""
+def _find_unique_corners(flat: I64, counts: tuple[int, int, int]) -> tuple[I64, I64]:
+    """Find the distinct (v, vt, vn) triples, in order of first use, and that of each corner."""
     key = (flat[:, 0] * (counts[1] + 1) + flat[:, 1] + 1) * (counts[2] + 1) + flat[:, 2] + 1
     _, first, inverse = np.unique(key, return_index=True, return_inverse=True)
     order = np.argsort(first, kind="stable")
@@ -150,8 +150,8 @@ def _unique_corners(flat: I64, counts: tuple[int, int, int]) -> tuple[I64, I64]:
     return flat[first[order]], rank[inverse]
 
 
-def _groups(source: _Source, faces: Triangles, triangles: U32) -> list[Group]:
-    """Triangles by material: keys in byte order, groups of one material joined."""
+def _group_triangles(source: _Source, faces: Triangles, triangles: U32) -> list[Group]:
+    """Group triangles by material: keys in byte order, groups of one material joined."""
     key_of = np.searchsorted(np.array(source.starts), faces.face, side="right") - 1
     by_key: dict[tuple[str, str], list[int]] = {}
     for index in np.unique(key_of):

@@ -1,4 +1,4 @@
-"""The faces of an OBJ file as corner indices, fan-triangulated."""
+"""Faces of an OBJ file as corner indices, triangulated as fans."""
 
 from __future__ import annotations
 
@@ -11,18 +11,21 @@ from nau_py.scene.readers.model_error import ModelError
 
 I64 = NDArray[np.int64]
 Counts = tuple[int, int, int]
-"""How many v, vt and vn lines there are."""
+"""Numbers of v, vt and vn lines."""
 
 
 @dataclass(slots=True)
 class Triangles:
-    """``corners`` (m, 3, 3): v, vt, vn indices from 0, -1 where absent; ``face`` (m,): its line."""
+    """Triangles of a file.
+
+    ``corners`` (m, 3, 3): v, vt, vn indices from 0, or -1 if absent; ``face`` (m,): its face.
+    """
 
     corners: I64
     face: I64
 
 
-def _corner(token: bytes, counts: Counts, line: int) -> Counts:
+def _parse_corner(token: bytes, counts: Counts, line: int) -> Counts:
     parts = token.split(b"/")
     found = [-1, -1, -1]
     text = token.decode("latin-1")
@@ -42,19 +45,19 @@ def _corner(token: bytes, counts: Counts, line: int) -> Counts:
     return found[0], found[1], found[2]
 
 
-def _slowly(lines: list[bytes], numbers: list[int], counts: list[Counts]) -> tuple[I64, I64]:
-    """Corners of every face, one by one: any mixture of forms, negative indices, exact errors."""
+def _parse_each(lines: list[bytes], numbers: list[int], counts: list[Counts]) -> tuple[I64, I64]:
+    """Parse corners one by one: any mixture of forms, negative indices, exact errors."""
     corners: list[Counts] = []
     sizes: list[int] = []
     for line, number, at in zip(lines, numbers, counts):
         tokens = line.split()[1:]
         sizes.append(len(tokens))
-        corners += [_corner(token, at, number + 1) for token in tokens]
+        corners += [_parse_corner(token, at, number + 1) for token in tokens]
     return np.array(corners, np.int64).reshape(-1, 3), np.array(sizes, np.int64)
 
 
-def _quickly(lines: list[bytes], counts: Counts) -> tuple[I64, I64] | None:
-    """Corners of faces that are all of one form with positive indices; None for others."""
+def _parse_uniform(lines: list[bytes], counts: Counts) -> tuple[I64, I64] | None:
+    """Parse corners at once if all have one form and positive indices; else return None."""
     sizes = np.array([len(line.split()) - 1 for line in lines], np.int64)
     text = b" ".join(line.lstrip()[1:] for line in lines)
     total, slashes = int(sizes.sum()), text.count(b"/")
@@ -78,12 +81,12 @@ def _quickly(lines: list[bytes], counts: Counts) -> tuple[I64, I64] | None:
 def read_faces(
     lines: list[bytes], numbers: list[int], counts: list[Counts], last: Counts
 ) -> Triangles:
-    """Triangles of the ``f`` lines. ``counts``: vertices before each line; ``last``: in all.
+    """Triangulate the ``f`` lines. ``counts``: vertices before each line; ``last``: in all.
 
     Raises :class:`~nau_py.scene.readers.model_error.ModelError` with the line of a wrong corner.
     """
-    found = _quickly(lines, last)
-    corners, sizes = found if found is not None else _slowly(lines, numbers, counts)
+    found = _parse_uniform(lines, last)
+    corners, sizes = found if found is not None else _parse_each(lines, numbers, counts)
     first = np.concatenate([[0], np.cumsum(sizes)[:-1]]) if len(sizes) else sizes
     fans = np.maximum(sizes - 2, 0)
     face = np.repeat(np.arange(len(sizes)), fans)

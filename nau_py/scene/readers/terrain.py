@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 
 from nau_py.scene.images import ImageError, load_image
-from nau_py.scene.mesh import Group, Mesh, normalized, pad4
+from nau_py.scene.mesh import Group, Mesh, normalize, pad4
 from nau_py.scene.readers.model_error import ModelError
 
 LUMINANCE = np.array([0.212671, 0.715160, 0.072169])
-"""Of red, green and blue: the weights of DevIL, which Nau loads images with."""
+"""Weights of red, green and blue in DevIL, which Nau loads images with."""
 
 
 def load_terrain(path: Path, material: str) -> Mesh:
-    """A grid in the xz plane, one unit a pixel, as high as the luminance, 0..1.
+    """Load a grid in the xz plane, one unit per pixel, as high as the luminance, 0..1.
 
     Raises :class:`~nau_py.scene.readers.model_error.ModelError`.
     """
@@ -38,7 +38,7 @@ def load_terrain(path: Path, material: str) -> Mesh:
     return Mesh(
         {
             "position": pad4(position, 1.0),
-            "normal": pad4(normalized(normal.reshape(-1, 3)), 0.0),
+            "normal": pad4(normalize(normal.reshape(-1, 3)), 0.0),
             "texCoord0": pad4(uv, 0.0),
         },
         [Group(material, faces.reshape(-1, 3).astype(np.uint32))],
