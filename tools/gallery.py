@@ -17,14 +17,17 @@ from nau_py.run.renderer import Renderer
 
 
 def sample_projects(root: Path) -> list[Path]:
-    """The project files of a repository's samples: the demos first, then the course."""
+    """List the sample projects of a repository: the demos first, then the course."""
     found = sorted((root / "projects").glob("*/project.xml"))
     return found + sorted((root / "projects").glob("course/*/project.xml"))
 
 
 def build_gallery(root: Path, out: Path) -> Iterator[str]:
-    """Render the samples of ``root`` and write ``index.md`` and pictures into ``out``; yields what
-    is done, a project at a time. Raises :class:`~nau_py.diagnostics.errors.NauError`."""
+    """Render the samples of ``root``; write ``index.md`` and pictures into ``out``.
+
+    Yields a line of progress for each project. Raises
+    :class:`~nau_py.diagnostics.errors.NauError`.
+    """
     out.mkdir(parents=True, exist_ok=True)
     lines = [
         "# Gallery",
@@ -79,16 +82,18 @@ def _row(item: dict[str, object]) -> str:
     assert isinstance(rays, dict)
     listed = ", ".join(f"{kind} {count:,}" for kind, count in rays.items())
     error = item.get("est_error")
-    said = "" if error is None else f"{error:.4f}"
+    written = "" if error is None else f"{error:.4f}"
     return (
         f"| {item['name']} | {item['class']} | {item['ms']:,.1f} | {item['pixels']:,} | {listed} "
-        f"| {said} |"
+        f"| {written} |"
     )
 
 
 def copy_sources(root: Path, out: Path) -> None:
-    """What the site's pages are and link to, in the folders that it has in the repository: the
-    README as the first page, docs, and the samples without their models."""
+    """Copy the pages of the site and the files they link to, in the folders of the repository.
+
+    These are the README as the first page, docs, and the samples without their models.
+    """
     shutil.copytree(root / "docs", out / "docs", ignore=shutil.ignore_patterns("__pycache__"))
     skip = shutil.ignore_patterns("models", "__pycache__", "*.nau_cache")
     shutil.copytree(root / "projects", out / "projects", ignore=skip)

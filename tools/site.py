@@ -1,4 +1,4 @@
-"""The sources of the site: ``python -m tools.site ROOT OUT`` writes them for mkdocs."""
+"""Sources of the site: ``python -m tools.site ROOT OUT`` writes them for mkdocs."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ NAV: list[dict[str, Any]] = [
 
 
 def configuration() -> dict[str, Any]:
-    """mkdocs' configuration. Links are checked; pages of the samples need no entry."""
+    """Return mkdocs' configuration. Links are checked; pages of the samples need no entry."""
     return {
         "site_name": "nau_py",
         "site_description": "Hybrid rendering from project files",
@@ -77,8 +77,8 @@ def main() -> None:
     source = out / "src"
     source.mkdir(parents=True)
     copy_sources(root, source)
-    for said in build_gallery(root, source / "gallery"):
-        sys.stderr.write(f"{said}\n")
+    for line in build_gallery(root, source / "gallery"):
+        sys.stderr.write(f"{line}\n")
     write_text(out / "mkdocs.yml", json.dumps(configuration(), indent=2) + "\n")  # JSON is YAML
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from nau_py.accuracy.candidate import AS_IT_IS, Candidate
 from nau_py.diagnostics.diagnostic import error
 from nau_py.diagnostics.errors import ProjectError
-from nau_py.model.knob import Value, subject
+from nau_py.model.knob import Value, find_knob_target
 from nau_py.model.linked import Project
 from nau_py.model.node import Node
 from nau_py.model.passes import Pass
@@ -30,7 +30,7 @@ def apply(project: Project, pipeline: Pipeline, setting: Candidate, own: Candida
     for name, value in setting.values:
         if value == own[name] or value == AS_IT_IS:
             continue
-        found = subject(project, pipeline.passes, name)
+        found = find_knob_target(project, pipeline.passes, name)
         if not found.nodes:
             message = f"knob '{name}': no project file says it; only nau-cost turns it"
             raise ProjectError(error("E002", where, message))

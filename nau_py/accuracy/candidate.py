@@ -12,7 +12,7 @@ from nau_py.diagnostics.errors import ProjectError
 from nau_py.diagnostics.location import Location
 from nau_py.model.accuracy import Accuracy
 from nau_py.model.attributes.texture import COLOR_FORMATS
-from nau_py.model.knob import NothingToTurn, Value, subject, traced
+from nau_py.model.knob import IdleKnob, Value, find_knob_target, pick_raytrace_passes
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.model.pipeline import Pipeline
@@ -62,16 +62,16 @@ def ladders(project: Project, pipeline: Pipeline, given: Mapping[str, str]) -> L
         texts = {k.name or "": (k.values or "", k.where("values")) for k in node.knobs}
     if not texts:
         texts = {"spp": (DEFAULT_SPP, where), "depth": (DEFAULT_DEPTH, where)}
-        if any(p.mask for p in traced(pipeline.passes)):
+        if any(p.mask for p in pick_raytrace_passes(pipeline.passes)):
             texts["mask"] = ("project, all", where)
     found: Ladders = {}
     errors = []
     for name, (text, place) in texts.items():
         try:
-            found[name] = subject(project, pipeline.passes, name).ladder(text)
+            found[name] = find_knob_target(project, pipeline.passes, name).parse_values(text)
         except LookupError as problem:
             errors.append(error("A001", place, str(problem.args[0])))
-        except NothingToTurn as problem:
+        except IdleKnob as problem:
             errors.append(error("A003", place, str(problem)))
         except ValueError as problem:
             errors.append(error("A002", place, f"knob '{name}': {problem}"))
@@ -84,7 +84,7 @@ def base(project: Project, pipeline: Pipeline, turned: Ladders) -> Candidate:
     """The project as it is, in terms of the knobs that are turned."""
     values: list[tuple[str, Value]] = []
     for name in turned:
-        own = subject(project, pipeline.passes, name).get(project)
+        own = find_knob_target(project, pipeline.passes, name).get(project)
         values.append((name, 1.0 if name == "scale" else AS_IT_IS if own is None else own))
     return Candidate(tuple(values))
 
@@ -104,7 +104,7 @@ def best(project: Project, pipeline: Pipeline, start: Candidate, turned: Ladders
     wanted = dict(start.values)
     if "depth" in turned:
         wanted["depth"] = max([wanted["depth"], *turned["depth"]], key=float)
-    if any(p.mask for p in traced(pipeline.passes)):
+    if any(p.mask for p in pick_raytrace_passes(pipeline.passes)):
         wanted["mask"] = "all"
     for name, value in (("target-error", 0.0), ("scale", 1.0), ("format", "float")):
         if name in turned:
@@ -132,8 +132,8 @@ def prepare(
     (ACCUMULATE), unless the knob ``format`` says otherwise."""
     changed = copy.deepcopy(project)
     passes = choose_pipeline(changed, pipeline.name).passes
-    for pass_ in traced(passes):
-        subject(changed, [pass_], f"{pass_.name}/ACCUMULATE").set(0)
+    for pass_ in pick_raytrace_passes(passes):
+        find_knob_target(changed, [pass_], f"{pass_.name}/ACCUMULATE").set(0)
     options = replace(options, window_format="RGBA32F")
     for name, value in candidate.values:
         if name == "mask":
@@ -150,13 +150,13 @@ def prepare(
             options = replace(options, window_format=f"RGBA{suffix}")
             _set_format(changed, passes, suffix)
         else:
-            subject(changed, passes, name).set(value)
+            find_knob_target(changed, passes, name).set(value)
     return Prepared(changed, options, size)
 
 
 def _set_format(project: Project, passes: list[Pass], suffix: str) -> None:
     """Give the traced target texels of the same channels and another type."""
-    for pass_ in traced(passes):
+    for pass_ in pick_raytrace_passes(passes):
         owner = project.target_of(pass_)
         if owner is None or not owner[1].colors:
             continue

@@ -23,7 +23,7 @@ from nau_py.accuracy.statistics import interval
 from nau_py.accuracy.worth import worth
 from nau_py.diagnostics.diagnostic import Diagnostic, Severity, error
 from nau_py.diagnostics.errors import ProjectError
-from nau_py.model.knob import traced
+from nau_py.model.knob import pick_raytrace_passes
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
 from nau_py.passes import pass_classes
@@ -151,7 +151,7 @@ def cost(
     every = candidates(start, turned, combine)
     spps = [_spp(project, chosen, c) for c in every]
     samples = asked.reference or told.reference or max(MORE_SPP * max(spps), LEAST_SPP)
-    rays = traced(chosen.passes)
+    rays = pick_raytrace_passes(chosen.passes)
     masked = any(p.mask for p in rays)
     if rays:
         _check_reference(project, samples, max(spps))
@@ -272,7 +272,9 @@ def _spp(project: Project, pipeline: Pipeline, candidate: Candidate) -> int:
     given = candidate["spp"]
     if isinstance(given, int):
         return given
-    own = [project.value(p, "PASS", "RAYS_PER_PIXEL")[0] for p in traced(pipeline.passes)]
+    own = [
+        project.value(p, "PASS", "RAYS_PER_PIXEL")[0] for p in pick_raytrace_passes(pipeline.passes)
+    ]
     return max((int(v) for v in own), default=1)
 
 

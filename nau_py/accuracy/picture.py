@@ -8,7 +8,7 @@ import numpy as np
 from PIL import Image
 
 from nau_py.accuracy.metrics import F64, Mask
-from nau_py.model.knob import traced
+from nau_py.model.knob import pick_raytrace_passes
 from nau_py.model.pipeline import Pipeline
 from nau_py.raytrace.selection.mask import read_mask
 
@@ -46,7 +46,7 @@ def enlarged(image: F64, shape: tuple[int, int]) -> F64:
 def mask_of(frame: Frame, pipeline: Pipeline) -> Mask | None:
     """The pixels that the mask of the raytrace pass selects, (h, w), row 0 at the top; None
     without a mask."""
-    for pass_ in traced(pipeline.passes):
+    for pass_ in pick_raytrace_passes(pipeline.passes):
         weights = read_mask(pass_, frame.targets)
         if weights is not None:
             return np.asarray(weights > 0)

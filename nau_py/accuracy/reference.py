@@ -14,7 +14,7 @@ import numpy as np
 import nau_py.version
 from nau_py.accuracy.candidate import Candidate
 from nau_py.accuracy.measure import Bench, Reference
-from nau_py.model.knob import traced
+from nau_py.model.knob import pick_raytrace_passes
 from nau_py.process.files import write_bytes
 from nau_py.run.used_files import used_files
 
@@ -68,7 +68,7 @@ def reference(
 ) -> Reference:
     """Render ``candidate`` with ``spp`` samples a pixel in all, or take it from the cache."""
     path = cache_folder() / f"{content_key(bench, candidate, spp, device)}.npz"
-    rays = bool(traced(bench.pipeline.passes))
+    rays = bool(pick_raytrace_passes(bench.pipeline.passes))
     label = candidate.but("spp", spp).label if rays else candidate.label
     batch = candidate.but("spp", -(-spp // BATCHES)) if rays else candidate
     if keep and path.is_file():

@@ -1,7 +1,7 @@
-"""The catalogue of rules: stable ids with the texts that reports and the reference page need.
+"""The catalogue of rules: stable ids with the texts for reports and for the reference page.
 
-A rule is registered where its finding is made: beside its check in :mod:`nau_py.rules`, in a
-plug-in, or in :mod:`nau_py.diagnostics.run_rules` for findings that only a run reports.
+A rule is registered beside its check in :mod:`nau_py.rules` or in a plug-in. Findings that only a
+run reports have theirs in :mod:`nau_py.diagnostics.run_rules`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from nau_py.diagnostics.location import Location
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """One rule. ``bad`` and ``good`` are small pieces of a file."""
+    """One rule. ``bad`` and ``good`` are short pieces of a file."""
 
     id: str
     severity: Severity

@@ -1,4 +1,4 @@
-"""One finding about a project, for the person who wrote it."""
+"""One finding about a project: rule, severity, place, message, fixes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from nau_py.diagnostics.location import NOWHERE, Location
 
 
 class Severity(StrEnum):
-    """How bad a finding is. Only an error stops a run."""
+    """Severity of a finding. Only an error stops a run."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -17,20 +17,22 @@ class Severity(StrEnum):
 
 
 class Part(StrEnum):
-    """What of a file a change is about."""
+    """The part of a file that a change replaces."""
 
     VALUE = "value"
-    """A value: at its position, or in the element that stands there."""
+    """A value: at its position, or in the element at that position."""
     ELEMENT = "element"
     """The name of an element (of a key in YAML), its end tag included."""
     ATTRIBUTE = "attribute"
-    """The name of an attribute, whose value stands at the position."""
+    """The name of an attribute; the position is that of its value."""
 
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """``old`` becomes ``new`` at a place; an attribute whose ``new`` is empty goes, value and
-    all."""
+    """Replacement of ``old`` by ``new`` at a place.
+
+    An attribute whose ``new`` is empty is removed with its value.
+    """
 
     location: Location
     part: Part
@@ -40,7 +42,7 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Fix:
-    """A way to mend a finding. ``safe``: the picture stays the same; else it is a guess."""
+    """A correction of a finding. ``safe``: the picture stays the same; else it is a guess."""
 
     title: str
     changes: tuple[Change, ...]
@@ -49,16 +51,16 @@ class Fix:
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """A rule id, a place, and what is wrong there, with the names that the file uses."""
+    """A rule id, a place, and a message that uses the names of the file."""
 
     rule: str
     severity: Severity
     location: Location
     message: str
     related: tuple[tuple[Location, str], ...] = field(default=())
-    """Further places that the message speaks of."""
+    """Further places that the message mentions."""
     fixes: tuple[Fix, ...] = field(default=(), compare=False)
-    """Ways to mend it; the first one is the likely one."""
+    """Possible corrections, the most likely one first."""
 
     def __str__(self) -> str:
         where = f"{self.location}: " if self.location != NOWHERE else ""

@@ -1,12 +1,12 @@
-"""What nau_py raises.
+"""Exceptions of nau_py.
 
 ::
 
-    NauError                 every error of this package
-    ├── ProjectError         the project is wrong: its diagnostics say where
+    NauError                 base of every error of this package
+    ├── ProjectError         the project is wrong: the diagnostics give the places
     ├── DeviceError          no usable OpenGL driver
     ├── ShaderError          a GLSL program does not compile or link
-    ├── ProgramError         a ray program failed, or returned what it must not
+    ├── ProgramError         a ray program failed, or returned a wrong type
     └── OutputError          a result cannot be written
 """
 
@@ -18,7 +18,7 @@ from nau_py.diagnostics.diagnostic import Diagnostic
 
 
 class NauError(Exception):
-    """Carries the diagnostics that explain it."""
+    """Base class of errors, with the diagnostics that explain them."""
 
     def __init__(self, diagnostics: Diagnostic | Iterable[Diagnostic]) -> None:
         listed = [diagnostics] if isinstance(diagnostics, Diagnostic) else list(diagnostics)

@@ -1,4 +1,4 @@
-"""Where something was written: the first thing that every diagnostic says."""
+"""Positions in text files."""
 
 from __future__ import annotations
 

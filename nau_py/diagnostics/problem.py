@@ -1,4 +1,4 @@
-"""What a reader could not take in. Readers collect problems; lint turns them into diagnostics."""
+"""Problems of reading a file. Readers collect them; lint makes diagnostics of them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class ProblemKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One finding of a reader: what it is, where, and the words for the message."""
+    """One problem: kind, place, and the words for its message."""
 
     kind: ProblemKind
     location: Location

@@ -16,7 +16,7 @@ _TAB = 4
 
 
 def shown_path(file: str) -> str:
-    """A path relative to the working directory where it lies below it."""
+    """Return a path relative to the working directory if it is below it."""
     try:
         return str(Path(file).resolve().relative_to(Path.cwd()))
     except ValueError:
@@ -40,7 +40,7 @@ def _excerpt(location: Location, sources: Mapping[str, str]) -> list[str]:
 
 
 def text_lines(diagnostic: Diagnostic, sources: Mapping[str, str]) -> list[str]:
-    """``file:line:col: severity[rule]: message``, the source line, and a caret."""
+    """Write ``file:line:col: severity[rule]: message``, the source line, and a caret."""
     where = diagnostic.location
     place = Location(shown_path(where.file), where.line, where.column) if where.file else where
     head = f"{place}: " if where.file else ""
@@ -49,7 +49,7 @@ def text_lines(diagnostic: Diagnostic, sources: Mapping[str, str]) -> list[str]:
 
 
 def to_text(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str]) -> str:
-    """All findings, one after the other."""
+    """Write all findings as text, one after the other."""
     return "".join(line + "\n" for d in diagnostics for line in text_lines(d, sources))
 
 
@@ -62,7 +62,7 @@ def _place(location: Location) -> dict[str, Any]:
 
 
 def to_json(diagnostics: Iterable[Diagnostic]) -> str:
-    """A list of ``{rule, severity, file, line, column, message, related}``."""
+    """Write a list of ``{rule, severity, file, line, column, message, related}``."""
     listed = [
         {
             "rule": d.rule,
@@ -140,6 +140,6 @@ def to_sarif(diagnostics: Iterable[Diagnostic], version: str) -> str:
 
 
 def worst(diagnostics: Iterable[Diagnostic], strict: bool) -> bool:
-    """Whether a run must fail: an error, or with ``strict`` a warning."""
+    """Return True if a run must fail: an error, or with ``strict`` a warning."""
     bad = {Severity.ERROR, Severity.WARNING} if strict else {Severity.ERROR}
     return any(d.severity in bad for d in diagnostics)

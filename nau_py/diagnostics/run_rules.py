@@ -1,7 +1,7 @@
 """Rules of findings that only a run reports: drivers, shaders, models, scripts, ray programs.
 
-The rooms that run a project emit them. They are registered here because those rooms may be absent
-when the reference page or a report needs their titles.
+The rooms that run a project emit these findings. Reports and the reference page need the texts
+without importing those rooms, so the rules are registered here.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ D101 = rule(
     "D101",
     ERROR,
     "No OpenGL driver",
-    "Running needs OpenGL 4.5; Mesa's software driver will do.",
+    "Running needs OpenGL 4.5; Mesa's software driver is enough.",
     "a machine without libegl1",
     "apt-get install libegl1 libgl1 libgl1-mesa-dri",
 )
@@ -102,16 +102,16 @@ G005 = rule(
     "G005",
     WARNING,
     "GLSL accepted with changes",
-    "The driver rejects the text as it is, where others do not; what was changed is said.",
+    "Some drivers reject this source. nau_py rewrites it and reports each change.",
     "in vec4 eye; (fragment) where the vertex stage has out vec3 eye;",
     "in vec3 eye;",
 )
 G004 = rule(
     "G004",
     ERROR,
-    "Extension of OpenGL not there",
-    "A shader needs what this driver does not have, or mesh stages, for which nau_py does not "
-    "use GL_NV_mesh_shader.",
+    "OpenGL extension missing",
+    "A shader needs an extension that this driver does not have, or mesh stages, for which "
+    "nau_py does not use GL_NV_mesh_shader.",
     "<shader name='s' ms='a.mesh' ps='a.frag'/>",
     "<shader name='s' vs='a.vert' ps='a.frag'/>",
 )
@@ -119,7 +119,7 @@ L001 = rule(
     "L001",
     WARNING,
     "Lua is not installed",
-    "Scripts run with the extra `lua`; without it passes go on as if there were none.",
+    "Scripts run with the extra `lua`; without it passes run as if they had no scripts.",
     "<preScript file='a.lua' script='f'/> after pip install nau_py",
     "pip install 'nau_py[lua]'",
 )
@@ -127,16 +127,16 @@ L008 = rule(
     "L008",
     WARNING,
     "Lua script failed",
-    "The file does not load, or a function raised, ran too long or used too much memory. As in "
-    "Nau, its functions are not called any more and its tests say no.",
+    "The file does not load, or a function raised an error, ran too long or used too much "
+    "memory. As in Nau, its functions are not called again, and its tests count as false.",
     "function f() return nothing.x end",
     "function f() return true end",
 )
 L009 = rule(
     "L009",
     WARNING,
-    "Lua script wants to write a file",
-    "Scripts of a project write none: the picture and the targets are nau-run's to write.",
+    "Lua script tried to write a file",
+    "Scripts of a project must not write files; nau-run writes the picture and the targets.",
     "saveTexture('L::colour')",
     "nau-run project.xml --targets out",
 )
@@ -144,7 +144,7 @@ M001 = rule(
     "M001",
     ERROR,
     "Model unreadable",
-    "A model file could not be read; what is wrong is said.",
+    "A model file could not be read; the message gives the reason.",
     "f 1 2 9 in an OBJ with 3 vertices",
     "f 1 2 3",
 )
@@ -152,7 +152,7 @@ M003 = rule(
     "M003",
     WARNING,
     "Vertices not finite",
-    "Faces with such vertices are left out.",
+    "Faces with such vertices are dropped.",
     "v nan 0 0",
     "v 0 0 0",
 )
@@ -186,7 +186,7 @@ P010 = rule(
     "P010",
     ERROR,
     "Render target incomplete",
-    "The driver cannot make such a target, or one of that size.",
+    "The driver cannot make such a target, or not in that size.",
     "<SIZE width='99999' height='8'/>",
     "<SIZE width='1024' height='8'/>",
 )
@@ -203,7 +203,8 @@ R020 = rule(
     "R020",
     ERROR,
     "Parameter cannot be set",
-    "`--set NAME=VALUE` sets what the <interface> of the project offers; both are checked.",
+    "`--set NAME=VALUE` sets a value that the <interface> of the project offers; name and value "
+    "are checked.",
     "nau-run project.xml --set Aperture=wide",
     "nau-run project.xml --set Aperture=0.2",
 )
@@ -211,15 +212,15 @@ T010 = rule(
     "T010",
     ERROR,
     "Ray program raised",
-    "A program failed; the place is its own source line.",
+    "A program raised an exception; the place is its own source line.",
     "def shade(hits): return hits.nothing",
     "def shade(hits): return hits.color('DIFFUSE')",
 )
 T011 = rule(
     "T011",
     ERROR,
-    "Ray program returned the wrong thing",
-    "Shape or type is not what is needed.",
+    "Ray program returned a wrong type",
+    "Shape or type differ from the expected ones.",
     "def shade(hits): return 'red'",
     "def shade(hits): return [1.0, 0.0, 0.0]",
 )
@@ -236,7 +237,7 @@ T014 = rule(
     "T014",
     WARNING,
     "Samples that are not finite",
-    "They are dropped, or painted by the exception program, and counted.",
+    "They are dropped, or replaced by the exception program, and counted.",
     "return light / distance",
     "return light / np.maximum(distance, 1e-6)",
 )

@@ -1,4 +1,4 @@
-"""Reading a project with everything that it names, in Nau's load order (docs/format.md, 3.1)."""
+"""Loading of a project with all of its files, in Nau's load order (docs/format.md, 3.1)."""
 
 from __future__ import annotations
 
@@ -33,10 +33,9 @@ _DEFAULT_KEYS = ("value", "x", "y", "z", "w", "r", "g", "b", "a")
 
 
 class Reader:
-    """Reads files into models, collecting problems and the text of each file.
+    """Reads files into models. Collects problems and the text of each file.
 
-    ``texts``: what to read for files in the place of what is on disk, by resolved path: an editor's
-    unsaved state.
+    ``texts`` replaces the content of files, by resolved path: unsaved text of an editor.
     """
 
     def __init__(self, texts: Mapping[Path, str] | None = None) -> None:
@@ -46,7 +45,8 @@ class Reader:
         self.sources: dict[str, str] = {}
 
     def read_text(self, path: Path) -> str | None:
-        """The text of a file (UTF-8, else Latin-1), or None with a problem."""
+        """Read the text of a file (UTF-8, else Latin-1). Returns None and adds a problem on
+        failure."""
         if self._texts and (unsaved := self._texts.get(path.resolve())) is not None:
             self.sources[str(path)] = unsaved
             return unsaved
@@ -66,7 +66,7 @@ class Reader:
         return text
 
     def element(self, path: Path, tag: str, cls: type[Node]) -> Element | None:
-        """The element tree of a file, upgraded; None with a problem where it has no reading."""
+        """Read and upgrade the elements of a file. Returns None and adds a problem on failure."""
         text = self.read_text(path)
         if text is None:
             return None
@@ -90,7 +90,7 @@ class Reader:
         return upgrade(root, self.problems)
 
     def _yaml_user_attributes(self, data: object) -> None:
-        """User attributes come first: they decide which keys of the rest are settings."""
+        """Declare user attributes first: they decide which keys of the rest are settings."""
         assets = data.get("assets") if isinstance(data, dict) else None
         listed = assets.get("attributes") if isinstance(assets, dict) else None
         if isinstance(listed, dict):  # the long form of a wrapper
@@ -101,7 +101,7 @@ class Reader:
                 self.declare(Element("attribute", texts))
 
     def declare(self, element: Element) -> None:
-        """Add the user attribute that an ``<attribute>`` element declares, if it is whole."""
+        """Add the user attribute that an ``<attribute>`` element declares, if it is complete."""
         type_, name = element.attributes.get("type", ""), element.attributes.get("name", "")
         set_ = self.registry.common(type_)
         data = element.attributes.get("data", "")
@@ -139,10 +139,10 @@ class Reader:
 def load_project(path: Path | str, texts: Mapping[Path, str] | None = None) -> Project:
     """Read a project file (XML or YAML) with its material libraries.
 
-    ``texts``: texts in the place of files, by resolved path.
+    ``texts`` replaces the content of files, by resolved path.
 
-    Never raises for what a file says: problems are collected in ``Project.problems`` and become
-    diagnostics in :mod:`nau_py.lint`.
+    Never raises for the content of a file: problems are collected in ``Project.problems``, and lint
+    reports them.
     """
     path = Path(path)
     reader = Reader(texts)
@@ -185,7 +185,7 @@ def load_library(path: Path | str, texts: Mapping[Path, str] | None = None) -> P
 
 
 def is_library(path: Path) -> bool:
-    """Whether a file is a material library: by its ending, or by the root of a YAML file."""
+    """Return True for a material library, by its ending."""
     if is_yaml(path):
         return path.name.lower().endswith(tuple(f".mlib{s}" for s in YAML_SUFFIXES))
     return path.suffix.lower() == ".mlib"

@@ -1,4 +1,4 @@
-"""Child tags and XML attributes that set an attribute of an attribute set (docs/format.md, 2)."""
+"""Values of attribute sets as child tags and as XML attributes (docs/format.md, 2)."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _KEYS: tuple[tuple[str, ...], ...] = (
 
 
 def spellings_of(attribute: Attribute) -> list[tuple[str, ...]]:
-    """For each component, the XML attributes that may hold it."""
+    """List for each component the XML attributes that may hold it."""
     kind = attribute.type
     if kind is DataType.STRING:
         return [("name",)]
@@ -45,7 +45,7 @@ def spellings_of(attribute: Attribute) -> list[tuple[str, ...]]:
 
 
 def keys_of(attribute: Attribute) -> list[str]:
-    """The XML attributes to write a value of ``attribute`` with, one a component."""
+    """List the XML attributes to write a value of ``attribute`` with, one a component."""
     spellings = spellings_of(attribute)
     if attribute.keys == "rgba":
         return [keys[1] if len(keys) > 1 else keys[0] for keys in spellings]
@@ -89,7 +89,7 @@ def _convert(
 def parse_setting(
     element: Element, attribute: Attribute, problems: list[Problem]
 ) -> Setting | None:
-    """The value of a child tag, or None (with a problem) where it has none."""
+    """Read the value of a child tag. Returns None and adds a problem on failure."""
     if attribute.readonly or not attribute.type.in_file:
         problems.append(Problem(ProblemKind.READ_ONLY, element.location, element.source_tag))
         return None
@@ -122,7 +122,7 @@ def parse_setting(
 def parse_inline(
     element: Element, key: str, attribute: Attribute, problems: list[Problem]
 ) -> Setting | None:
-    """The value of an XML attribute that names an attribute of a set."""
+    """Read the value of an XML attribute. Returns None if it is read-only, a vector or wrong."""
     if attribute.readonly or attribute.type.components != 1:
         return None
     value = _convert(element, key, attribute, problems)
@@ -130,6 +130,6 @@ def parse_inline(
 
 
 def write_setting(tag: str, setting: Setting, attribute: Attribute) -> Element:
-    """The child tag that :func:`parse_setting` reads back."""
+    """Write the child tag that :func:`parse_setting` reads back."""
     pairs = zip(keys_of(attribute), setting.parts)
     return Element(tag, {key: format_scalar(part) for key, part in pairs} | setting.extra)

@@ -1,6 +1,6 @@
-"""Old dialects made new: the ``optix*`` elements, old user attributes, old clears.
+"""Conversion of old dialects: the ``optix*`` elements, old user attributes, old clears.
 
-Works on elements, before any model is built; positions and written tags are kept for messages.
+Works on elements, before binding. Positions and written tags are kept for messages.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from nau_py.syntax.yaml import format_yaml
 
 
 def format_node(node: Node, registry: Registry, style: str) -> str:
-    """The text of a project file or library in ``style`` (``xml`` or ``yaml``)."""
+    """Write a project file or library in ``style`` (``xml`` or ``yaml``)."""
     tag = "materialLib" if isinstance(node, MaterialLibrary) else "project"
     element = unbind(node, tag, registry)
     if style == "yaml":

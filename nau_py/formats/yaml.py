@@ -1,7 +1,7 @@
-"""YAML to elements and back, directed by the models.
+"""YAML to elements and back, by the description of each class.
 
-The idiom: attributes are keys, wrappers are lists, vectors are lists of numbers, and a node that
-is given by its first attribute alone (a name, mostly) is a plain string.
+Attributes are keys, wrappers are lists, vectors are lists of numbers. A node that has only its
+first attribute (usually a name) is a plain string.
 """
 
 from __future__ import annotations
@@ -267,7 +267,7 @@ def _repeat(earlier: Any, child: Element) -> CommentedMap:
 
 
 def _append(data: CommentedMap, tag: str, value: Any) -> None:
-    """Add to the list of unknown elements ``tag``: under ``<tag>`` where the key is taken."""
+    """Add to the list of unknown elements ``tag``; the key is ``<tag>`` if ``tag`` is taken."""
     key = tag if isinstance(data.get(tag, CommentedSeq()), CommentedSeq) else f"<{tag}>"
     data.setdefault(key, CommentedSeq()).append(value)
 
@@ -280,7 +280,7 @@ def _unknown_data(element: Element) -> CommentedMap:
 
 
 def _native(text: str, data_type: DataType) -> Scalar:
-    """A YAML scalar that reads back as the same text, or the text itself."""
+    """Return a YAML scalar that reads back as the same text, or the text itself."""
     if not (data_type.is_number or data_type.is_boolean) or has_trailing_text(text, data_type):
         return text
     try:

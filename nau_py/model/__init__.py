@@ -1,1 +1,6 @@
-"""What a project file says: one noun a file. Knows neither XML nor YAML, GL nor Embree."""
+"""The nouns of a project: one class an element of a project file.
+
+Markers on the fields give each class one description (:mod:`nau_py.model.schema`), from which
+reading, writing, lint, completion and the reference page derive. The model reads no files and makes
+no pictures.
+"""

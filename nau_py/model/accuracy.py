@@ -1,7 +1,8 @@
-"""What a project says about accuracy and time: the knobs to turn, and their ladders.
+"""The element ``<accuracy>``: knobs to vary, with their values.
 
-A knob is called by a short name (:data:`KNOBS`), or by what it turns: ``PASS/ATTRIBUTE`` for an
-attribute of a pass, ``PASS/SELECTOR/ATTRIBUTE`` for one of a selector of a mask pass.
+A knob has a short name (:data:`KNOBS`), or the name of the number that it changes:
+``PASS/ATTRIBUTE`` for an attribute of a pass, ``PASS/SELECTOR/ATTRIBUTE`` for one of a selector of
+a mask pass.
 """
 
 from __future__ import annotations
@@ -18,14 +19,14 @@ UINT = DataType.UINT
 
 
 class Knob(Node):
-    """Something that can be had more or less accurate, and the values to try."""
+    """A setting that trades accuracy for time, and the values to measure."""
 
     name: Annotated[str | None, Attr(doc="Knob, or what it turns.", required=True)] = None
     values: Annotated[str | None, Attr(doc="Values, cheapest first.", required=True)] = None
 
 
 class Accuracy(Node):
-    """What `nau-cost` measures when it is not told otherwise."""
+    """Defaults of `nau-cost` for this project."""
 
     pipeline: Annotated[
         str | None, Attr(doc="Pipeline; default the project's.", ref="pipeline")
@@ -41,8 +42,8 @@ class Accuracy(Node):
 
 @dataclass(frozen=True, slots=True)
 class KnobKind:
-    """A knob by its short name. ``attribute``: that of the raytrace pass that it sets; ``words``:
-    its values, cheapest first, where they are no numbers."""
+    """A knob with a short name. ``attribute``: the attribute of the raytrace pass that it sets.
+    ``words``: its values, cheapest first, if they are not numbers."""
 
     doc: str
     attribute: str = ""

@@ -1,7 +1,7 @@
-"""Attribute sets: the properties that an object type has, as data (docs/format.md, section 9).
+"""Attribute sets: the properties of an object type, as data (docs/format.md, section 9).
 
-They decide which child tags a file may write, which ``component`` a ``valueof`` may name, what an
-unset value is, and what the reference page says.
+A set gives the child tags that a file may write, the ``component`` that a ``valueof`` may name, the
+value of an unset attribute, and the text of the reference page.
 """
 
 from __future__ import annotations
@@ -27,14 +27,14 @@ class Attribute:
     keys: str = "xyzw"
     """The component names to write: ``xyzw``, ``rgba`` or ``size`` (width, height)."""
     reference: str = ""
-    """For a STRING: what it names (``camera``, ``viewport``)."""
+    """For a STRING: kind of the object that it names (``camera``, ``viewport``)."""
     unit: str = ""
     """Unit of the number, for documentation."""
 
 
 @dataclass(slots=True)
 class AttributeSet:
-    """The attributes of one object type, in the order in which they are documented."""
+    """The attributes of one object type, in the order of documentation."""
 
     type: str
     attributes: dict[str, Attribute] = field(default_factory=dict)

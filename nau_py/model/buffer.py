@@ -19,7 +19,7 @@ class StructureField(Node):
 
 
 class BufferFile(Node):
-    """Initial content: ``.nbb`` is raw, anything else text."""
+    """Initial content: ``.nbb`` is raw, every other file is text."""
 
     name: Annotated[str | None, Attr(doc="Path.", required=True, file="buffer")] = None
 

@@ -16,7 +16,7 @@ class Projection(Configured):
 
 
 class Camera(Configured):
-    """A camera. Its tags are applied in the order in which they are written."""
+    """A camera. Its tags are applied in file order."""
 
     name: Annotated[str | None, Attr(doc="Camera name.", required=True)] = None
     projection: Annotated[

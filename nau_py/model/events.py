@@ -25,7 +25,7 @@ class SensorVector(Node):
 
 
 class Sensor(Node):
-    """Something that emits events: a clock, or a box that notices."""
+    """A source of events: a clock, or a box that detects objects."""
 
     name: Annotated[str | None, Attr(doc="Sensor name.", required=True)] = None
     class_: Annotated[
@@ -63,7 +63,7 @@ class Interpolator(Node):
 
 
 class Route(Node):
-    """Sends the events of a sender on to a receiver."""
+    """A connection that passes the events of a sender to a receiver."""
 
     name: Annotated[str | None, Attr(doc="Route name.", required=True)] = None
     sender: Annotated[str | None, Attr(doc="Sender.", required=True)] = None

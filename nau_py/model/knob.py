@@ -1,4 +1,4 @@
-"""What a knob turns in a project, and which values it can take."""
+"""Knobs applied to a project: the nodes and the attribute that a knob sets, and its values."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from nau_py.model.schema import schema_of
 Value = float | int | str
 
 
-class NothingToTurn(ValueError):
-    """The pipeline has nothing that the knob could turn."""
+class IdleKnob(ValueError):
+    """Raised for a knob that has no effect on the pipeline."""
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
-    """What a knob turns in a project: the nodes that have it, and its attribute."""
+class KnobTarget:
+    """The nodes that a knob sets, their attribute, and the values that it accepts."""
 
     nodes: tuple[Node, ...] = ()
     attribute: str = ""
@@ -35,7 +35,7 @@ class Subject:
     high: float = float("inf")
 
     def parse(self, text: str) -> Value:
-        """A value of the knob. Raises ValueError, which says what is legal."""
+        """Read a value of the knob. Raises ValueError with the legal values."""
         if self.words:
             if text not in self.words:
                 raise ValueError(
@@ -54,8 +54,8 @@ class Subject:
             raise ValueError(f"{text} is no whole number")
         return int(number) if self.whole else number
 
-    def ladder(self, text: str) -> tuple[Value, ...]:
-        """The values of a list, by commas or blanks. Raises ValueError."""
+    def parse_values(self, text: str) -> tuple[Value, ...]:
+        """Read a list of values, separated by commas or blanks. Raises ValueError."""
         parts = re.split(r"[\s,]+", text.strip()) if text.strip() else []
         if not parts:
             raise ValueError("it has no value")
@@ -74,7 +74,7 @@ class Subject:
                 setattr(node, self.attribute, value)
 
     def get(self, project: Project) -> Value | None:
-        """The value that the project gives; None where its nodes give none."""
+        """Return the value in the project; None if no node sets it."""
         for node in self.nodes:
             if isinstance(node, Pass):
                 found = project.value(node, "PASS", self.attribute)[0]
@@ -85,46 +85,45 @@ class Subject:
         return None
 
 
-def traced(passes: list[Pass]) -> list[RaytracePass]:
-    """The raytrace passes among ``passes``."""
+def pick_raytrace_passes(passes: list[Pass]) -> list[RaytracePass]:
+    """Return the raytrace passes among ``passes``."""
     return [p for p in passes if isinstance(p, RaytracePass)]
 
 
-def subject(project: Project, passes: list[Pass], name: str) -> Subject:
-    """What the knob ``name`` turns in the pipeline of ``passes``.
+def find_knob_target(project: Project, passes: list[Pass], name: str) -> KnobTarget:
+    """Find the nodes that the knob ``name`` sets in the pipeline of ``passes``.
 
-    Raises LookupError for a knob that does not exist, :class:`NothingToTurn` for one that is idle
-    there.
+    Raises LookupError for an unknown knob, :class:`IdleKnob` for one without effect.
     """
     kind = KNOBS.get(name)
     if kind is None:
         if "/" in name:
-            return _by_path(project, passes, name)
+            return _target_of_path(project, passes, name)
         known = list(KNOBS)
         raise LookupError(
             f"there is no knob '{name}'; there is {format_names(known)}, or PASS/ATTRIBUTE"
             f"{suggest_name(name, known)}"
         )
     if name in ("scale", "filter"):
-        return Subject(words=kind.words, low=kind.low, high=kind.high)
-    rays = traced(passes)
+        return KnobTarget(words=kind.words, low=kind.low, high=kind.high)
+    rays = pick_raytrace_passes(passes)
     if not rays:
-        raise NothingToTurn(f"knob '{name}' needs a raytrace pass; the pipeline has none")
+        raise IdleKnob(f"knob '{name}' needs a raytrace pass; the pipeline has none")
     if name == "mask" and not any(p.mask for p in rays):
-        raise NothingToTurn("knob 'mask' needs a mask; the raytrace pass has none")
+        raise IdleKnob("knob 'mask' needs a mask; the raytrace pass has none")
     if not kind.attribute:
-        return Subject(words=kind.words)
+        return KnobTarget(words=kind.words)
     return _pass_attribute(project, tuple(rays), kind.attribute)
 
 
-def _pass_attribute(project: Project, nodes: tuple[Pass, ...], name: str) -> Subject:
+def _pass_attribute(project: Project, nodes: tuple[Pass, ...], name: str) -> KnobTarget:
     attribute = project.registry["PASS"].attributes[name]
     low = -float("inf") if attribute.minimum is None else attribute.minimum
     high = float("inf") if attribute.maximum is None else attribute.maximum
-    return Subject(nodes, name, attribute.type.is_integer, attribute.values, low, high)
+    return KnobTarget(nodes, name, attribute.type.is_integer, attribute.values, low, high)
 
 
-def _by_path(project: Project, passes: list[Pass], name: str) -> Subject:
+def _target_of_path(project: Project, passes: list[Pass], name: str) -> KnobTarget:
     first, *rest = name.split("/")
     found = [p for p in passes if p.name == first]
     if not found:
@@ -145,8 +144,8 @@ def _by_path(project: Project, passes: list[Pass], name: str) -> Subject:
     if len(rest) == 2:
         nodes = tuple(_selectors(found[0], rest[0], rest[1]))
         if nodes:
-            return Subject(nodes, rest[1])
-        numbers = sorted(set(_numbers(found[0])))
+            return KnobTarget(nodes, rest[1])
+        numbers = sorted(set(_selector_numbers(found[0])))
         raise LookupError(
             f"knob '{name}': pass '{first}' has no such number of a selector; it has "
             f"{format_names([f'{first}/{n}' for n in numbers])}"
@@ -154,23 +153,23 @@ def _by_path(project: Project, passes: list[Pass], name: str) -> Subject:
     raise LookupError(f"knob '{name}': write PASS/ATTRIBUTE or PASS/SELECTOR/ATTRIBUTE")
 
 
-def _chosen(pass_: Pass) -> Iterator[Node]:
+def _walk_selectors(pass_: Pass) -> Iterator[Node]:
     if isinstance(pass_, MaskPass):
         for top in pass_.select:
             yield from top.walk()
 
 
 def _selectors(pass_: Pass, tag: str, attribute: str) -> list[Node]:
-    """The selectors ``tag`` of a mask pass that give the number ``attribute``."""
+    """List the selectors ``tag`` of a mask pass that set the number ``attribute``."""
     return [
         node
-        for node in _chosen(pass_)
+        for node in _walk_selectors(pass_)
         if node.tag == tag and isinstance(getattr(node, attribute, None), int | float)
     ]
 
 
-def _numbers(pass_: Pass) -> Iterator[str]:
-    for node in _chosen(pass_):
+def _selector_numbers(pass_: Pass) -> Iterator[str]:
+    for node in _walk_selectors(pass_):
         for attribute in schema_of(type(node)).attributes:
             if isinstance(attribute.of(node), int | float):
                 yield f"{node.tag}/{attribute.name}"

@@ -15,11 +15,11 @@ from nau_py.model.target import RenderTarget
 from nau_py.model.texture import ArrayOfTextures, CubeMap, Texture
 
 DEFAULT_LIBRARY = "__nau_material_lib"
-"""The library of the built-in resources and of the materials that model files bring."""
+"""The library of the built-in resources and of the materials of model files."""
 
 
 class MaterialLibrary(Node):
-    """One library file. Several files may share a name; they are then one library."""
+    """One library file. Files with one name are one library."""
 
     name: Annotated[str | None, Attr(doc="Library name.", required=True)] = None
     renderTargets: Annotated[
@@ -48,5 +48,5 @@ class MaterialLibrary(Node):
 
 
 def qualified(name: str, library: str) -> str:
-    """``lib::name``: names that hold ``::`` already are left alone."""
+    """Return ``lib::name``. A name that contains ``::`` stays as it is."""
     return name if "::" in name else f"{library}::{name}"

@@ -22,12 +22,12 @@ from nau_py.model.target import RenderTarget
 from nau_py.model.values import Scalar
 
 DEFAULT_SIZE = (640, 360)
-"""Window size, pixels, of a project that gives none (Nau's composer)."""
+"""Window size, pixels, of a project without one (Nau's composer)."""
 
 
 @dataclass(slots=True)
 class Project:
-    """What a project says, linked. Only data: nothing has been executed.
+    """A project file with its libraries. Only data: nothing has been executed.
 
     ``libraries[0]`` is the built-in library; the others follow in load order.
     """
@@ -62,7 +62,7 @@ class Project:
 
     @property
     def size(self) -> tuple[int, int]:
-        """Window width and height, pixels (docs/format.md, 3.1)."""
+        """Return window width and height, pixels (docs/format.md, 3.1)."""
         width, height = self.file.width, self.file.height
         if width is None or height is None:
             return DEFAULT_SIZE
@@ -84,15 +84,15 @@ class Project:
         return {c.name: c.value for c in named if c.name is not None and c.value is not None}
 
     def number(self, value: Scalar | None, default: float = 0.0) -> float:
-        """A number, or that of the constant that ``value`` names; ``default`` for neither."""
+        """Return a number, or the value of the constant that ``value`` names, or ``default``."""
         if isinstance(value, str):
             return self.constants.get(value, default)
         return default if value is None else float(value)
 
     def value(self, node: Configured, type_: str, name: str) -> tuple[Scalar, ...]:
-        """Attribute ``name`` of ``node``, of set ``type_``: as written or by default.
+        """Return attribute ``name`` of ``node``, of the set ``type_``: as written, or its default.
 
-        Constants are resolved, a VEC4 written with three components gets a fourth of 0.
+        Constants are resolved. A VEC4 that is written with three components gets a fourth of 0.
         """
         parts = node.get(name)
         if parts is None:
@@ -144,7 +144,7 @@ class Project:
         )
 
     def target_of_texture(self, texture: str) -> tuple[str, RenderTarget] | None:
-        """The render target (library name, node) that attachment ``lib::texture`` belongs to."""
+        """Find the render target (library name, node) of attachment ``lib::texture``."""
         library, _, name = texture.partition("::")
         for lib in self._in(library):
             for target in lib.renderTargets:
@@ -153,10 +153,10 @@ class Project:
         return None
 
     def target_of(self, pass_: Pass) -> tuple[str, RenderTarget] | None:
-        """The render target (library name, node) that a pass draws into; None for the window.
+        """Find the render target (library name, node) of a pass; None for the window.
 
-        ``sameas`` takes that of the last pass of the name that stands before this one, in any
-        pipeline (docs/format.md, 4.3).
+        ``sameas`` takes the target of the last pass of that name before this one, in any pipeline
+        (docs/format.md, 4.3).
         """
         reference = pass_.renderTarget
         if reference is None:
@@ -174,9 +174,9 @@ class Project:
         return (library, target) if target is not None else None
 
     def names(self, kind: str) -> dict[str, Node]:
-        """Everything of a ``kind`` that a reference can name, by qualified name.
+        """Map the qualified names of a ``kind`` to their nodes.
 
-        Kinds: those of :attr:`nau_py.model.node.Attr.ref`.
+        ``kind`` is one of the kinds of :attr:`nau_py.model.node.Attr.ref`.
         """
         plain: dict[str, list[Node]] = {
             "scene": [*self.assets.scenes, *self.assets.cameras],
@@ -201,7 +201,7 @@ class Project:
         return found
 
     def default_materials(self) -> list[str]:
-        """Names of the materials of the default library that files (not models) define."""
+        """List the materials of the default library that files (not models) define."""
         return [m.name for lib in self._in(DEFAULT_LIBRARY) for m in lib.materials if m.name]
 
 

@@ -11,7 +11,7 @@ from nau_py.model.values import DataType
 
 
 class MaterialMap(Node):
-    """Draw what has material ``fromMaterial`` with another one."""
+    """Replacement of material ``fromMaterial`` by another one."""
 
     fromMaterial: Annotated[
         str | None, Attr(doc="Name, or prefix and a final `*`.", required=True)
@@ -47,7 +47,7 @@ class InjectedShader(Node):
 
 
 class InjectedColor(Node):
-    """Colours taken from a material: the flagged ones, or all without a flag."""
+    """Colours of a material: the flagged ones, or all without a flag."""
 
     fromMaterial: Annotated[
         str | None, Attr(doc="Material.", required=True, ref="material", library="fromLibrary")
@@ -105,7 +105,7 @@ class InjectedImageArray(Configured):
 
 
 class InjectionMap(Node):
-    """Change parts of every material that matches ``toMaterial``, for this pass."""
+    """Changes to every material that matches ``toMaterial``, for this pass."""
 
     toMaterial: Annotated[
         str | None, Attr(doc="Name, or prefix and a final `*`.", required=True)
@@ -129,7 +129,7 @@ class InjectionMap(Node):
 
 
 def matches(pattern: str, name: str) -> bool:
-    """Nau's pattern: an exact name, or a prefix followed by a final ``*``."""
+    """Match Nau's pattern: an exact name, or a prefix followed by a final ``*``."""
     if pattern.endswith("*"):
         return name.startswith(pattern[:-1])
     return name == pattern

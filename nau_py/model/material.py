@@ -77,7 +77,7 @@ class StateReference(Node):
 
 
 class ValueOf(Node):
-    """Where the value of a uniform comes from."""
+    """The source of the value of a uniform."""
 
     uniform: Annotated[str | None, Attr(doc="GLSL name.", required=True)] = None
     type: Annotated[str | None, Attr(doc="Object type.", required=True, ref="object type")] = None
@@ -97,7 +97,7 @@ class ShaderReference(Node):
 
 
 class Material(Node):
-    """A clone of ``__nauDefault`` with the parts that the file changes."""
+    """A copy of ``__nauDefault`` with the parts that the file changes."""
 
     name: Annotated[str | None, Attr(doc="Material name.", required=True)] = None
     color: Annotated[ColorBlock | None, Child(ColorBlock)] = None

@@ -10,7 +10,7 @@ from nau_py.model.node import Attr, Child, Configured, Items, Node, NodeSettings
 
 
 class PhysicsMaterial(Configured):
-    """How a scene moves and collides."""
+    """Movement and collision of a scene."""
 
     name: Annotated[str | None, Attr(doc="Physics material name.", required=True)] = None
     type: Annotated[
@@ -29,7 +29,7 @@ class PhysicsMaterial(Configured):
 
 
 class PhysicsProperties(Configured):
-    """What holds for the whole world."""
+    """Properties of the whole world."""
 
     settings: Annotated[NodeSettings, Settings("PHYSICS_MANAGER")] = Field(default_factory=dict)
 

@@ -59,7 +59,7 @@ class PhysicsReference(Node):
 
 
 class Assets(Node):
-    """What the passes work with."""
+    """Scenes, cameras, lights, libraries and everything else that passes use."""
 
     constants: Annotated[list[Constant], Items(Constant, "constant", "constants")] = Field(
         default_factory=list

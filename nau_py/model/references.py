@@ -13,14 +13,14 @@ from nau_py.model.walk import nodes
 PLAIN_KINDS = (
     "scene", "camera", "light", "viewport", "pipeline", "library", "pass", "object type",
 )  # fmt: skip
-"""Kinds of names that stand in no library."""
+"""Kinds of names that belong to no library."""
 _OWN_LIBRARY = ("shader", "state")
 CONTEXTS = {"CAMERA": "camera", "LIGHT": "light", "VIEWPORT": "viewport", "SCENE": "scene"}
-"""Object types whose ``context`` names an object, and the kind of name."""
+"""Object types whose ``context`` names an object, with the kind of that name."""
 
 
 def owned_nodes(project: Project) -> Iterator[tuple[Node, str]]:
-    """Every node with the name of the library that it stands in; empty in the project file."""
+    """Yield every node with the name of its library; an empty name in the project file."""
     own = {id(n): lib.name or "" for lib in project.libraries[1:] for n in lib.walk()}
     for node in nodes(project):
         yield node, own.get(id(node), "")
@@ -61,12 +61,12 @@ def _light_cameras(project: Project) -> list[str]:
 
 
 def pass_libraries(project: Project) -> list[str]:
-    """The libraries that passes make for their own materials."""
+    """List the libraries that passes make for their own materials."""
     return [f"{pl.name}#{p.name}" for pl in project.pipelines for p in pl.passes]
 
 
 def known_names(project: Project, kind: str) -> list[str]:
-    """Every name that a reference of a kind can have, qualified."""
+    """List every qualified name that a reference of a kind can have."""
     if kind == "object type":
         return list(OBJECT_TYPES)
     if kind == "pass":

@@ -82,7 +82,7 @@ VERTEX_ATTRIBUTES = (
 
 
 class BufferAttribute(Node):
-    """The buffer of a vertex attribute, or of the indices: four floats, or one unsigned, each."""
+    """The buffer of a vertex attribute (four floats each) or of the indices (one unsigned each)."""
 
     name: Annotated[
         str | None, Attr(doc="Buffer.", required=True, ref="buffer", library="fromLibrary")
@@ -91,7 +91,7 @@ class BufferAttribute(Node):
 
 
 class BufferGeometry(Node):
-    """Geometry that lives in GPU buffers; children are named like vertex attributes."""
+    """Geometry in GPU buffers; children are named like vertex attributes."""
 
     name: Annotated[str | None, Attr(doc="Object name.", required=True)] = None
     primitive: Annotated[str | None, Attr(doc="Topology.", required=True, values=TOPOLOGIES)] = None

@@ -49,7 +49,7 @@ class Shader(Node):
     ms_files: Annotated[StageFiles | None, Child(StageFiles, "ms")] = None
 
     def files(self, stage: str) -> list[str]:
-        """The paths of a stage's source files, as written, in order."""
+        """Return the paths of a stage's source files, as written, in order."""
         single = getattr(self, stage)
         listed = getattr(self, f"{stage}_files")
         found = [single] if single else []

@@ -39,7 +39,7 @@ class DepthStencilAttachment(Node):
 
 
 class RenderTarget(Configured):
-    """Textures that passes draw into. Each is used like any texture of the library."""
+    """Textures that passes draw into. Each can be used like a texture of the library."""
 
     name: Annotated[str | None, Attr(doc="Render target name.", required=True)] = None
     colors: Annotated[
@@ -52,7 +52,7 @@ class RenderTarget(Configured):
 
     @property
     def depth_name(self) -> str:
-        """The name of its depth texture, the hidden one included (docs/format.md, 6.1)."""
+        """Return the name of its depth texture, the hidden one included (docs/format.md, 6.1)."""
         attachment = self.depth or self.depthStencil
         return (attachment.name if attachment else None) or f"{self.name}_depth"
 

@@ -1,4 +1,4 @@
-"""Nau's data types and the way its loader turns text into values (docs/format.md, 1.3 and 2)."""
+"""Nau's data types, and the conversion of text to values (docs/format.md, 1.3 and 2)."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ class DataType(StrEnum):
 
     @cached_property
     def components(self) -> int:
-        """How many scalars one value holds."""
+        """Number of scalars of one value."""
         if self in (DataType.MAT3, DataType.MAT4):
             return int(self.value[-1]) ** 2
         return int(self.value[-1]) if self.value[-1].isdigit() else 1
 
     @cached_property
     def required_components(self) -> int:
-        """A VEC4 may leave out its last component, which is then 0."""
+        """Number of scalars that a file must write. The last one of a VEC4 is optional."""
         return 3 if self is DataType.VEC4 else self.components
 
     @cached_property
@@ -62,7 +62,7 @@ class DataType(StrEnum):
 
     @cached_property
     def in_file(self) -> bool:
-        """Whether a project file can write a value of this type."""
+        """True if a project file can write a value of this type."""
         return self not in (DataType.MAT3, DataType.MAT4, DataType.INTARRAY)
 
 
@@ -118,11 +118,11 @@ _NAME = re.compile(r"[A-Za-z_][\w.\- ]*$")
 
 
 class Unconvertible(ValueError):
-    """The text has no value of the wanted type, not even by Nau's prefix rules."""
+    """Raised for text without a value of the type, even by Nau's prefix rules."""
 
 
 def to_int(text: str) -> int:
-    """``sscanf("%d")``: the longest integer prefix. Raises :class:`Unconvertible` without one."""
+    """Read the longest integer prefix, as ``sscanf("%d")``. Raises :class:`Unconvertible`."""
     match = _INTEGER.match(text)
     if match is None:
         raise Unconvertible(text)
@@ -130,7 +130,7 @@ def to_int(text: str) -> int:
 
 
 def to_float(text: str) -> float:
-    """``sscanf("%lf")``: the longest decimal prefix. Raises :class:`Unconvertible` without one."""
+    """Read the longest decimal prefix, as ``sscanf("%lf")``. Raises :class:`Unconvertible`."""
     match = _FLOAT.match(text)
     if match is None:
         raise Unconvertible(text)
@@ -138,7 +138,7 @@ def to_float(text: str) -> float:
 
 
 def to_bool(text: str) -> bool:
-    """Nau's case-insensitive prefix test. Raises :class:`Unconvertible` for other text."""
+    """Compare prefixes without case, as Nau does. Raises :class:`Unconvertible`."""
     lower = text.lower()
     if lower.startswith(("true", "yes", "1")):
         return True
@@ -148,10 +148,10 @@ def to_bool(text: str) -> bool:
 
 
 def to_scalar(text: str, data_type: DataType) -> Scalar:
-    """One component of ``data_type``.
+    """Read one component of ``data_type``.
 
-    A number that does not parse but could be the name of a constant is returned as that name
-    (``str``); it is resolved where the project's constants are known.
+    A text that is no number but may name a constant is returned as it is (``str``). It is resolved
+    when the constants of the project are known. Raises :class:`Unconvertible`.
     """
     if data_type in (DataType.ENUM, DataType.STRING):
         return text
@@ -166,7 +166,7 @@ def to_scalar(text: str, data_type: DataType) -> Scalar:
 
 
 def has_trailing_text(text: str, data_type: DataType) -> bool:
-    """Whether Nau would use only the beginning of ``text`` (``"256,"``, ``"102.55.0"``)."""
+    """Return True if Nau uses only the beginning of ``text`` (``"256,"``, ``"102.55.0"``)."""
     if not data_type.is_number:
         return False
     pattern = _INTEGER if data_type.is_integer else _FLOAT
@@ -180,7 +180,7 @@ def has_trailing_text(text: str, data_type: DataType) -> bool:
 
 
 def format_scalar(value: Scalar) -> str:
-    """The text that :func:`to_scalar` reads back as the same value."""
+    """Write the text that :func:`to_scalar` reads back as the same value."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, float):

@@ -1,4 +1,4 @@
-"""The nodes that lint looks at: the project's and its libraries', not the built-in ones."""
+"""Nodes of a project and of its own libraries, without the built-in library."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from nau_py.model.node import Node
 
 
 def own_libraries(project: Project) -> list[MaterialLibrary]:
-    """Every library but the built-in one."""
+    """List every library except the built-in one."""
     return project.libraries[1:]
 
 
 def nodes(project: Project) -> Iterator[Node]:
-    """Every node of the project file and of its libraries, in document order of declaration."""
+    """Yield every node of the project file and of its libraries, parents first."""
     if project.file.tag:
         yield from project.file.walk()
     for library in [*own_libraries(project), *project.physics]:

@@ -1,5 +1,5 @@
-"""Rules over a project's data: nothing is executed, no GL context is made.
+"""Lint rules over the data of a project. Nothing is executed and no GL context is made.
 
-Empty on purpose: :func:`nau_py.lint` is the function, and this package must be importable first
-without loading any rule.
+One module a family of rules registers them with their checks; :mod:`nau_py.rules.engine` runs all
+checks. This module imports nothing, so that a plug-in can import the registry alone.
 """

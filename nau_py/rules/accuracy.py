@@ -1,4 +1,4 @@
-"""A: accuracy and effects: knobs that turn something, effects that exist."""
+"""A: accuracy and effects: knobs that change the pipeline, effects that exist."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.model.accuracy import Accuracy, Knob
 from nau_py.model.effects import wanted
-from nau_py.model.knob import NothingToTurn, subject
+from nau_py.model.knob import IdleKnob, find_knob_target
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
 from nau_py.rules.registry import LintContext, check
@@ -25,15 +25,15 @@ A001 = rule(
 A002 = rule(
     "A002",
     ERROR,
-    "Ladder with a wrong value",
-    "The values of a knob are numbers of its range, or words that it knows, each once.",
+    "Wrong value of a knob",
+    "The values of a knob are numbers in its range, or words that it accepts; each value once.",
     "<knob name='spp' values='0, 4'/>",
     "<knob name='spp' values='1, 4'/>",
 )
 A003 = rule(
     "A003",
     ERROR,
-    "Knob that turns nothing",
+    "Knob without effect",
     "The pipeline has no raytrace pass, or its pass no mask: every value gives the same picture.",
     "<knob name='mask' values='project, all'/> without a mask",
     "<knob name='spp' values='1, 4'/>",
@@ -41,8 +41,8 @@ A003 = rule(
 A004 = rule(
     "A004",
     ERROR,
-    "Number of runs or samples without use",
-    "`reference` is at least 1 and more than any spp that is measured; a spread needs 2 `runs`.",
+    "Too few runs or samples",
+    "`reference` must be greater than every measured spp; a spread needs at least 2 `runs`.",
     "<accuracy runs='1'/>",
     "<accuracy runs='5'/>",
 )
@@ -65,7 +65,7 @@ A006 = rule(
 
 
 def _pipeline(project: Project, node: Accuracy) -> Pipeline | None:
-    """The pipeline that is measured; None where R013 or S005 says that there is none."""
+    """Return the pipeline to measure; None if R013 or S005 reports that there is none."""
     file = project.file.pipelines
     name = node.pipeline or (file.default if file else None)
     if name is None:
@@ -75,7 +75,7 @@ def _pipeline(project: Project, node: Accuracy) -> Pipeline | None:
 
 @check
 def accuracy(context: LintContext) -> Iterator[Diagnostic]:
-    """Knobs and ladders of ``<accuracy>``."""
+    """Check the knobs of ``<accuracy>`` and their values."""
     node = context.project.file.accuracy
     pipeline = _pipeline(context.project, node) if node is not None else None
     if node is None or pipeline is None:
@@ -92,11 +92,11 @@ def accuracy(context: LintContext) -> Iterator[Diagnostic]:
             )
         seen[knob.name] = knob
         try:
-            turned = subject(context.project, pipeline.passes, knob.name)
-            values = turned.ladder(knob.values or "")
+            target = find_knob_target(context.project, pipeline.passes, knob.name)
+            values = target.parse_values(knob.values or "")
         except LookupError as problem:
             yield A001.at(knob.where("name"), str(problem.args[0]))
-        except NothingToTurn as problem:
+        except IdleKnob as problem:
             yield A003.at(knob.where("name"), f"{problem}: pipeline '{pipeline.name}'")
         except ValueError as problem:
             yield A002.at(knob.where("values"), f"values of knob '{knob.name}': {problem}")
@@ -114,7 +114,7 @@ def accuracy(context: LintContext) -> Iterator[Diagnostic]:
 
 @check
 def effects(context: LintContext) -> Iterator[Diagnostic]:
-    """Names in ``<effects>``."""
+    """Check the names in ``<effects>``."""
     node = context.project.file.effects
     if node is None or node.simulate is None:
         return

@@ -21,7 +21,7 @@ T015 = rule(
     "T015",
     ERROR,
     "Compiled program cannot be run",
-    "The PTX text is broken, or has an instruction or a call that is not supported: the message "
+    "The PTX text is broken, or has an instruction or a call that is not supported. The message "
     "names line, procedure and instruction.",
     "file='x.ptx', which uses wmma",
     "nvcc without those, or a Python file x.py beside it",
@@ -30,18 +30,19 @@ T016 = rule(
     "T016",
     ERROR,
     "Compiled program failed",
-    "It ended its process (a wrong address) or did not end: the message names the program and the "
-    "launch index.",
+    "The program crashed its process (a wrong address) or exceeded the time limit. The message "
+    "names the program and the launch index.",
     "ld.global.f32 %f1, [0];",
     "an address of the launch parameters or of the record",
 )
 T017 = rule(
     "T017",
     ERROR,
-    "Program variable that nothing sets",
-    "A compiled program of OptiX 3 to 6 reads a variable by name, and neither the pass nor nau_py "
-    "sets one of that name. Set are: eye, U, V, W, fov, top_object, the ray types, output0 and on, "
-    "vertex_buffer, index_buffer, the vertex attributes, tex0 to tex7, and what the pass names.",
+    "Unset program variable",
+    "A compiled program of OptiX 3 to 6 reads a variable by a name that neither the pass nor "
+    "nau_py sets. nau_py sets eye, U, V, W, fov, top_object, the ray types, output0 and "
+    "following, vertex_buffer, index_buffer, the vertex attributes and tex0 to tex7; a pass sets "
+    "the variables that it names.",
     "rtDeclareVariable(float4, lightdir, , ); and <valueof optixVar='lightDir' …/>",
     "<valueof optixVar='lightdir' …/>",
 )
@@ -49,16 +50,16 @@ T018 = rule(
     "T018",
     WARNING,
     "Program variable of another size",
-    "A compiled program declares a variable with other bytes than what the pass sets.",
+    "A compiled program declares a variable with another size than the value that the pass sets.",
     "rtDeclareVariable(float3, diffuse, , ); and COLOR DIFFUSE, four floats",
     "rtDeclareVariable(float4, diffuse, , );",
 )
 T019 = rule(
     "T019",
     WARNING,
-    "Compiled program threw",
-    "It threw an exception, rays went deeper than 20, or it reached beyond a buffer: its exception "
-    "program ran at these launch indices, or their work ended.",
+    "Compiled program raised an exception",
+    "The program threw an exception, rays were nested deeper than 20, or a buffer was indexed "
+    "out of bounds. At these launch indices the exception program ran, or the work ended.",
     "rtTrace inside of a closest hit program without an end",
     "if (prd.depth < 8) rtTrace(…);",
 )
@@ -74,34 +75,34 @@ T021 = rule(
     "T021",
     WARNING,
     "Payload that does not fit",
-    "A program uses words or bytes of a payload with which no ray of the pass is sent, or sends "
-    "more than the two words of Nau's pipeline.",
+    "A program uses words or bytes of a payload that no ray of the pass carries, or sends more "
+    "than the two words of Nau's pipeline.",
     "optixSetPayload_2 in a hit program, optixTrace(…, p0, p1)",
     "optixTrace(…, p0, p1, p2) or two words that hold an address",
 )
 T022 = rule(
     "T022",
     WARNING,
-    "Material entry is not whole",
-    "Nau makes the records of a material from its own entry, without looking at the default one: "
-    "an entry with fewer ray types shifts the records behind it, one without a miss program may "
-    "leave the pass without. nau_py keeps records in step.",
+    "Incomplete material entry",
+    "Nau makes the records of a material from its own entry only: an entry with fewer ray types "
+    "shifts the records behind it, and an entry without a miss program may leave the pass "
+    "without one. nau_py keeps the records aligned.",
     "<rtMap to='Glass'> with Radiance only, where there is Shadow, too",
     "<rtMap to='Glass'> with an entry for each ray type, miss programs included",
 )
 T023 = rule(
     "T023",
     WARNING,
-    "Parameter at an odd place",
-    "The block of rtGlobalParams is packed without gaps, compilers align addresses to 8 bytes.",
+    "Misaligned parameter",
+    "The block of rtGlobalParams is packed without gaps, but compilers align addresses to 8 bytes.",
     "a FLOAT, then a BUFFER ID",
     "the BUFFER ID first",
 )
 T024 = rule(
     "T024",
     WARNING,
-    "Attribute that compiled programs do not follow",
-    "How samples are drawn, gathered and ended is what a compiled program itself does.",
+    "Attribute without effect on compiled programs",
+    "A compiled program decides itself how samples are drawn, accumulated and ended.",
     "<TARGET_ERROR value='0.01' /> beside <rayGen file='x.ptx' …/>",
     "RAYS_PER_PIXEL, which programs read",
 )

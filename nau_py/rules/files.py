@@ -52,7 +52,7 @@ _SOFT = {"texture": F004}
 
 @check
 def files(context: LintContext) -> Iterator[Diagnostic]:
-    """Every attribute that is a path, but those of ray programs (T)."""
+    """Check every attribute that is a path, except those of ray programs (T)."""
     for node in nodes(context.project):
         for attribute in schema_of(type(node)).attributes:
             value = attribute.of(node)
@@ -90,5 +90,5 @@ def _path(text: str, kind: str, where: Location, what: str) -> Iterator[Diagnost
 
 
 def _renamed(text: str, name: str) -> str:
-    """The path ``text`` with another last part."""
+    """Replace the last part of the path ``text``."""
     return text[: max(text.rfind("/"), text.rfind("\\")) + 1] + name

@@ -1,4 +1,4 @@
-"""Registration of all rules and checks: one module a family, and those of plug-ins."""
+"""Registration of all rules and checks: one module a family, and the modules of plug-ins."""
 
 from __future__ import annotations
 

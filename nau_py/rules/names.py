@@ -15,7 +15,7 @@ N001 = rule(
     "N001",
     ERROR,
     "Duplicate name",
-    "Two things of a kind have one name; references could mean either.",
+    "Two objects of one kind share a name; a reference could mean either.",
     "<camera name='Eye'/> <camera name='Eye'/>",
     "<camera name='Eye'/> <camera name='Left'/>",
 )
@@ -47,7 +47,7 @@ def _duplicates(kind: str, nodes: Iterable[Node], found: Rule) -> Iterator[Diagn
 
 @check
 def project_names(context: LintContext) -> Iterator[Diagnostic]:
-    """Cameras, viewports, pipelines; lights, scenes and passes, which Nau merges."""
+    """Check cameras, viewports and pipelines; lights, scenes and passes, which Nau merges."""
     project = context.project
     assets = project.assets
     yield from _duplicates("camera", assets.cameras, N001)
@@ -72,7 +72,7 @@ def _attachments(libraries: list[MaterialLibrary]) -> list[Node]:
 
 @check
 def library_names(context: LintContext) -> Iterator[Diagnostic]:
-    """Everything in a library; libraries of one name share a name space."""
+    """Check the names in libraries. Libraries of one name share a name space."""
     libraries = own_libraries(context.project)
     for name in dict.fromkeys(lib.name for lib in libraries):
         same = [lib for lib in libraries if lib.name == name]

@@ -1,4 +1,4 @@
-"""Q: quantities: numbers that no picture can come of, or not the expected one."""
+"""Q: quantities: numbers that give no picture, or not the expected one."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ Q002 = rule(
 Q003 = rule(
     "Q003",
     ERROR,
-    "Colour or number that light cannot have",
-    "It is not finite.",
+    "Colour or number that is not finite",
+    "Colours and numbers of lights and materials must be finite.",
     "<DIFFUSE r='nan' g='1' b='1'/>",
     "<DIFFUSE r='0.5' g='1' b='1'/>",
 )
@@ -40,25 +40,25 @@ Q004 = rule(
     "Q004",
     WARNING,
     "Negative value",
-    "Colours of materials and lights, absorption and shininess are not negative: light would be "
-    "taken away, or grow on its way.",
+    "Colours of materials and lights, absorption and shininess must not be negative: a negative "
+    "one removes light, or amplifies it along a ray.",
     "<ABSORPTION r='-1' g='0' b='0'/>",
     "<ABSORPTION r='1' g='0' b='0'/>",
 )
 Q005 = rule(
     "Q005",
     ERROR,
-    "Material gives off more light than it takes in",
-    "DIFFUSE and FLUORESCENCE of a band are shares of the light that arrives in it: together at "
-    "most 1.",
+    "Material emits more light than it receives",
+    "DIFFUSE and FLUORESCENCE of a band are fractions of the light that arrives in that band; "
+    "their sum is at most 1.",
     "<DIFFUSE b='0.8' …/><FLUORESCENCE_BLUE r='0.5' …/>",
     "<DIFFUSE b='0.4' …/><FLUORESCENCE_BLUE r='0.5' …/>",
 )
 Q006 = rule(
     "Q006",
     ERROR,
-    "Lens that does not exist",
-    "The radius of a lens is not negative, and it is sharp at a distance greater than 0.",
+    "Impossible lens",
+    "The radius of a lens must not be negative, and its focus distance must be greater than 0.",
     "<APERTURE value='-1'/>",
     "<APERTURE value='0.05'/>",
 )
@@ -68,7 +68,7 @@ TOLERANCE = 1e-6
 
 
 def _setting(nodes: list[Configured | None], name: str) -> tuple[Setting | None, Location | None]:
-    """The last setting of that name, and where it stands."""
+    """Return the last setting called ``name`` among ``nodes``, and its position."""
     found: Setting | None = None
     where: Location | None = None
     for node in nodes:
@@ -83,7 +83,7 @@ def _numbers(project: Project, setting: Setting) -> list[float]:
 
 @check
 def cameras(context: LintContext) -> Iterator[Diagnostic]:
-    """Near planes and lenses."""
+    """Check near planes and lenses."""
     project = context.project
     for camera in project.assets.cameras:
         nodes: list[Configured | None] = [camera, camera.projection]
@@ -111,7 +111,7 @@ def cameras(context: LintContext) -> Iterator[Diagnostic]:
 
 @check
 def lights(context: LintContext) -> Iterator[Diagnostic]:
-    """Colours of lights, and shapes without size."""
+    """Check the colours and areas of lights."""
     project = context.project
     for light in project.assets.lights:
         label = f"light '{light.name}'"
@@ -141,7 +141,7 @@ def lights(context: LintContext) -> Iterator[Diagnostic]:
 
 @check
 def materials(context: LintContext) -> Iterator[Diagnostic]:
-    """Colours of library materials, and what fluorescence gives."""
+    """Check the colours of library materials, and the energy of fluorescence."""
     project = context.project
     names = [
         "DIFFUSE",

@@ -12,7 +12,7 @@ from nau_py.rules.registry import LintContext, check
 
 @check
 def plug_ins(context: LintContext) -> Iterator[Diagnostic]:
-    """Plug-ins of passes and rules are loaded before lint; the others are loaded here."""
+    """Load the plug-ins that lint has not loaded yet, and report those that failed."""
     plugins.load_plugins(plugins.READERS)
     plugins.program_files()
     for message in plugins.failures():

@@ -40,9 +40,9 @@ T005 = rule(
     "T005",
     ERROR,
     "Compiled program without a Python counterpart",
-    "A pass launches compiled programs where its ray generation program is one; else a `.ptx` runs "
-    "only where a Python file of the same name stands beside it, with functions in the place of "
-    "what it exports.",
+    "A pass whose ray generation program is compiled launches compiled programs. In any other "
+    "pass a `.ptx` file needs a Python file of the same name beside it, with a function for each "
+    "procedure that it exports.",
     "<rayGen file='a.py' …/> and <rtProgram file='x.ptx' …/> alone",
     "all of them in x.ptx, or x.py beside it",
 )

@@ -18,7 +18,7 @@ T001 = rule(
     "T001",
     ERROR,
     "More than one raytrace pass",
-    "Nau's integration allows one raytrace pass a project, in whichever pipeline. "
+    "Nau's integration allows one raytrace pass in all pipelines of a project together. "
     "`<project raytracePasses='many'>` lifts the limit for nau_py.",
     "two passes of class raytrace",
     "one, or <project raytracePasses='many' …>",
@@ -26,7 +26,7 @@ T001 = rule(
 T002 = rule(
     "T002",
     ERROR,
-    "Mask that nothing writes",
+    "Mask that no pass writes",
     "No earlier pass of the pipeline writes the texture that selects the pixels, so nothing "
     "would be traced.",
     "<buffer var='mask' texture='L::position'/> before the pass that draws it",
@@ -36,14 +36,15 @@ T007 = rule(
     "T007",
     WARNING,
     "Undeclared ray type",
-    "The pass declares its ray types, and this is none of them; Nau would use the first one.",
+    "The pass declares its ray types, and this name is not among them; Nau would use the first "
+    "one.",
     "<rayType name='Radiance'> with only Phong declared",
     "<rayType name='Phong'>",
 )
 T008 = rule(
     "T008",
     ERROR,
-    "Raytrace pass lacks what it needs",
+    "Incomplete raytrace pass",
     "A raytrace pass needs an entry point with a ray generation program, and a render target; with "
     "compiled programs of OptiX 3 to 6, both geometry programs, too.",
     "<pass class='raytrace' name='a'/>",
@@ -61,14 +62,14 @@ T013 = rule(
     "T013",
     WARNING,
     "Only one mask counts",
-    "Several inputs claim to select pixels; the first one with `mask` is used.",
+    "Several inputs have the attribute `mask`; the first one is used.",
     "two <buffer … mask='w'/>",
     "one <buffer … mask='w'/>",
 )
 
 
 def raytrace_passes(project: Project) -> list[tuple[str, RaytracePass]]:
-    """(pipeline name, pass) of every raytrace pass, in file order."""
+    """List the raytrace passes with the names of their pipelines, in file order."""
     return [
         (pipeline.name or "", p)
         for pipeline in project.pipelines
@@ -79,7 +80,7 @@ def raytrace_passes(project: Project) -> list[tuple[str, RaytracePass]]:
 
 @check
 def one_pass(context: LintContext) -> Iterator[Diagnostic]:
-    """One raytrace pass a project."""
+    """Check that a project has one raytrace pass."""
     found = raytrace_passes(context.project)
     if len(found) < 2 or context.project.file.raytracePasses == "many":
         return
@@ -96,7 +97,7 @@ def one_pass(context: LintContext) -> Iterator[Diagnostic]:
 
 @check
 def masks(context: LintContext) -> Iterator[Diagnostic]:
-    """The mask must be written by an earlier pass."""
+    """Check that an earlier pass writes the mask."""
     project = context.project
     for pipeline in project.pipelines:
         graph = find_dependencies(project, pipeline, context.contracts)
@@ -121,7 +122,7 @@ def masks(context: LintContext) -> Iterator[Diagnostic]:
 
 @check
 def completeness(context: LintContext) -> Iterator[Diagnostic]:
-    """Entry point, render target, ray types."""
+    """Check entry point, render target, outputs and ray types."""
     for _, pass_ in raytrace_passes(context.project):
         if pass_.rtEntryPoint is None or pass_.rtEntryPoint.rayGen is None:
             yield T008.at(

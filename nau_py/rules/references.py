@@ -1,4 +1,4 @@
-"""R: references to what is not defined."""
+"""R: references to undefined names."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ class _Names:
 
 @check
 def references(context: LintContext) -> Iterator[Diagnostic]:
-    """Every attribute that names something."""
+    """Check every attribute that names something."""
     names = _Names(context.project)
     for node, library in owned_nodes(context.project):
         schema = schema_of(type(node))
@@ -187,7 +187,7 @@ def _attribute(
 
 @check
 def components(context: LintContext) -> Iterator[Diagnostic]:
-    """Types, components and named contexts of uniform and program values."""
+    """Check types, components and named contexts of uniform and program values."""
     project = context.project
     names = _Names(project)
     for node in nodes(project):
@@ -220,7 +220,7 @@ def components(context: LintContext) -> Iterator[Diagnostic]:
 
 @check
 def patterns(context: LintContext) -> Iterator[Diagnostic]:
-    """Maps whose pattern matches nothing, where the names of models are known."""
+    """Report maps whose pattern matches no material, if the materials of models are known."""
     if context.materials is None:
         return
     known = sorted(context.materials)
@@ -244,7 +244,7 @@ def patterns(context: LintContext) -> Iterator[Diagnostic]:
 
 @check
 def same_targets(context: LintContext) -> Iterator[Diagnostic]:
-    """``sameas`` of a pass that has no render target."""
+    """Report ``sameas`` of a pass without a render target."""
     by_name: dict[str | None, Pass] = {}
     for pipeline in context.project.pipelines:
         for pass_ in pipeline.passes:

@@ -1,4 +1,4 @@
-"""X: what readers could not take in, and old dialects."""
+"""X: text that readers could not use, and old dialects."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ X001 = rule(
 X002 = rule(
     "X002",
     ERROR,
-    "File is not even Nau's dialect",
+    "Broken XML",
     "Nau's XML dialect allows unquoted values and more, but tags must close and match.",
     "<scene name='A'></scenes>",
     "<scene name='A'></scene>",
@@ -29,7 +29,7 @@ X003 = rule(
     "X003",
     WARNING,
     "Text between elements",
-    "Text outside tags means nothing and is ignored; often a comment lost its marks.",
+    "Text outside tags is ignored; often it is a comment without its marks.",
     "<map> old <state/></map>",
     "<map> <!-- old --> <state/></map>",
 )
@@ -45,7 +45,8 @@ X005 = rule(
     "X005",
     NOTE,
     "Old dialect",
-    "An element in a spelling that today's Nau rejects is read in its current meaning.",
+    "The element has an old spelling, which today's Nau rejects. It is read with its present "
+    "meaning.",
     "<attribute name='n' context='PASS' type='INT'/>",
     "<attribute name='n' type='PASS' data='INT'/>",
 )
@@ -53,7 +54,7 @@ V001 = rule(
     "V001",
     ERROR,
     "Wrong type",
-    "The text is not a value of the wanted type.",
+    "The text is not a value of the expected type.",
     "<FOV value='wide'/>",
     "<FOV value='60'/>",
 )
@@ -117,5 +118,5 @@ def _diagnostic(p: Problem) -> Diagnostic:
 
 @check
 def problems(context: LintContext) -> Iterator[Diagnostic]:
-    """Everything that the readers noticed."""
+    """Report every problem of the readers."""
     yield from (_diagnostic(p) for p in context.project.problems)

@@ -1,4 +1,4 @@
-"""L: what this version does not run; and what only running finds, for the reference page."""
+"""L: parts of a project that this version does not run."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from nau_py.model.walk import nodes
 from nau_py.rules.registry import LintContext, check
 
 UNSUPPLIED_TYPES = ("SPHERE", "GRID", "PHYSICS_MANAGER", "PHYSICS_MATERIAL")
-"""Object types of which uniforms and parameters get no value."""
+"""Object types that give no values to uniforms and parameters."""
 
 L007 = rule(
     "L007",
     WARNING,
     "Value is not supplied",
-    "This version has no values of that object type; the uniform keeps the value it has.",
+    "This version has no values of that object type; the uniform keeps its value.",
     "<valueof uniform='s' type='GRID' context='S::g' component='LENGTH'/>",
     "<valueof uniform='s' type='RENDERER' context='CURRENT' component='MODEL'/>",
 )
@@ -27,8 +27,8 @@ L006 = rule(
     "L006",
     NOTE,
     "Pipeline without an end",
-    "In mode RUN_ALL a pipeline with neither frameCount nor testScript is drawn for ever; those "
-    "after it have no turn.",
+    "In mode RUN_ALL a pipeline with neither frameCount nor testScript runs forever; the "
+    "pipelines after it never run.",
     "<pipelines mode='RUN_ALL'><pipeline name='A'/><pipeline name='B'/>",
     "<pipelines mode='RUN_ALL'><pipeline name='A' frameCount='100'/><pipeline name='B'/>",
 )
@@ -36,15 +36,15 @@ L002 = rule(
     "L002",
     WARNING,
     "Physics is not simulated",
-    "Physics libraries are read and checked; nothing moves by them.",
+    "Physics libraries are read and checked, but they move nothing.",
     "<physicsLib filename='a.plib'/>",
     "leave it out",
 )
 
 
 @check
-def turns(context: LintContext) -> Iterator[Diagnostic]:
-    """Pipelines that never let the next one have its turn."""
+def endless_pipelines(context: LintContext) -> Iterator[Diagnostic]:
+    """Report pipelines that never end, so that the next one never runs."""
     pipelines = context.project.file.pipelines
     if pipelines is None or pipelines.mode != "RUN_ALL":
         return
@@ -53,13 +53,13 @@ def turns(context: LintContext) -> Iterator[Diagnostic]:
             yield L006.at(
                 pipeline.location,
                 f"pipeline '{pipeline.name}' has neither frameCount nor testScript, so in mode "
-                f"RUN_ALL '{after.name}' has no turn",
+                f"RUN_ALL '{after.name}' never runs",
             )
 
 
 @check
 def values(context: LintContext) -> Iterator[Diagnostic]:
-    """Uniforms and parameters of object types without values."""
+    """Report uniforms and parameters of object types without values."""
     for node in nodes(context.project):
         if isinstance(node, ValueOf | RayVariable) and node.type in UNSUPPLIED_TYPES:
             yield L007.at(
@@ -70,7 +70,7 @@ def values(context: LintContext) -> Iterator[Diagnostic]:
 
 @check
 def physics(context: LintContext) -> Iterator[Diagnostic]:
-    """Physics libraries, which are ignored."""
+    """Report physics libraries, which are not simulated."""
     for library in context.project.assets.physicsLibs:
         yield L002.at(
             library.location, f"physics library '{library.filename}' is checked, not simulated"

@@ -33,7 +33,7 @@ V006 = rule(
     "V006",
     ERROR,
     "Out of range",
-    "The number lies outside what the attribute allows.",
+    "The number is outside the range of the attribute.",
     "<COLOR r='2' g='1' b='1'/>",
     "<COLOR r='1' g='1' b='1'/>",
 )
@@ -41,7 +41,7 @@ V007 = rule(
     "V007",
     ERROR,
     "Undefined constant",
-    "The text is no number, and no constant or alias of the project has that name.",
+    "The text is no number, and the project has no constant or alias of that name.",
     "<SIZE width='shadow' height='512'/>",
     "<constant name='shadow' value='512'/> … <SIZE width='shadow' height='512'/>",
 )
@@ -125,7 +125,7 @@ _STRUCTURAL = {
 
 @check
 def unknown_things(context: LintContext) -> Iterator[Diagnostic]:
-    """Attributes and elements that the models have no place for."""
+    """Report attributes and elements that the class of a node does not declare."""
     for node in nodes(context.project):
         attributes = schema_of(type(node)).names(context.project.registry)
         for key, value in node.unknown_attributes.items():
@@ -151,7 +151,7 @@ def unknown_things(context: LintContext) -> Iterator[Diagnostic]:
 
 
 def _remove(where: Location, key: str, safe: bool) -> tuple[Fix, ...]:
-    """The fix that takes an ignored attribute away: safe where it cannot be a slip of the pen."""
+    """Make the fix that removes an ignored attribute. It is safe if the name is no misspelling."""
     return (Fix(f"Remove '{key}'", (Change(where, Part.ATTRIBUTE, key, ""),), safe),)
 
 
@@ -199,7 +199,7 @@ def _left_over(
 
 @check
 def attribute_values(context: LintContext) -> Iterator[Diagnostic]:
-    """Required attributes, and values of enumerated ones."""
+    """Check required attributes, and values of enumerated ones."""
     for node in nodes(context.project):
         for attribute in schema_of(type(node)).attributes:
             key, value = attribute.name, attribute.of(node)
@@ -233,7 +233,7 @@ def _constant(project: Project, name: str, what: str, where: Location) -> Iterat
 
 @check
 def settings(context: LintContext) -> Iterator[Diagnostic]:
-    """Enums, ranges and constants of child tags and inline attributes."""
+    """Check enums, ranges and constants of child tags and inline attributes."""
     for node in nodes(context.project):
         schema = schema_of(type(node))
         for part in [*schema.settings, *schema.inline]:
@@ -278,7 +278,7 @@ def _limits(low: float | None, high: float | None) -> str:
 
 @check
 def has_pipelines(context: LintContext) -> Iterator[Diagnostic]:
-    """A project needs something to run."""
+    """Check that a project has a pipeline to run."""
     project = context.project
     if project.file.name is not None and not project.pipelines:
         yield S005.at(project.file.location, f"project '{project.name}' has no pipeline to run")

@@ -510,6 +510,6 @@ def test_a_pipeline_without_an_end(folder: Folder) -> None:
             folder.write("project.xml", two.format(mode=mode, count=count, quad=quad))
             lines = [d.message for d in nau_py.lint(folder.load()) if d.rule == "L006"]
             found[mode != "", count != ""] = lines
-    message = "has neither frameCount nor testScript, so in mode RUN_ALL 'B' has no turn"
+    message = "has neither frameCount nor testScript, so in mode RUN_ALL 'B' never runs"
     assert found.pop((True, False)) == [f"pipeline 'A' {message}"]
     assert list(found.values()) == [[], [], []]

@@ -1,4 +1,4 @@
-"""Every registered object type with its attribute set, and the user attributes of a project."""
+"""Attribute sets of all object types, and the user attributes of a project."""
 
 from __future__ import annotations
 

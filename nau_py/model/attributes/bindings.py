@@ -1,4 +1,4 @@
-"""How materials bind textures, images and buffers (docs/format.md, 9.7)."""
+"""Attributes of bindings: textures, images and buffers of materials (docs/format.md, 9.7)."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ _INT = DataType.INT
 
 
 def channels(internal_format: str) -> int:
-    """Number of channels of an internal format: 1, 2 or 4 (1 for depth)."""
+    """Return the number of channels of an internal format: 1, 2 or 4 (1 for depth)."""
     if internal_format.startswith("RGBA"):
         return 4
     return 2 if internal_format.startswith("RG") else 1
