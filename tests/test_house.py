@@ -20,8 +20,8 @@ STRICT: dict[str, set[str]] = {
 }
 """Room to the part of the foundation that it may import."""
 REPEATED_CLASSES = {
-    "Child", "CostRun", "Group", "Kind", "Layout", "Link",
-    "Program", "Programs", "Resources", "Scene", "Session", "Step", "Style",
+    "Child", "CostRun", "Group", "Kind", "Layout",
+    "Program", "Programs", "Resources", "Scene", "Style",
     "Texture", "_Reader",
 }  # fmt: skip
 """Class names that are used twice until they are renamed."""

@@ -1,4 +1,4 @@
-"""What could be written at the cursor."""
+"""Completion: the elements, attributes, names and files that fit at a cursor."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from nau_py.lsp.links import procedures
+from nau_py.lsp.links import list_procedures
 from nau_py.lsp.place import (
     Entry,
     Inside,
@@ -33,7 +33,7 @@ from nau_py.model.references import CONTEXTS, known_names
 from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
 from nau_py.raytrace.programs.source import stand_in
 from nau_py.scene.names import list_default_materials
-from nau_py.syntax.cursor import ITEM, Cursor, CursorKind, Step
+from nau_py.syntax.cursor import ITEM, Cursor, CursorKind, CursorStep
 from nau_py.syntax.xml_cursor import locate_xml_cursor
 from nau_py.syntax.yaml_cursor import locate_yaml_cursor
 
@@ -49,13 +49,15 @@ _PATTERNS = {
     (MaterialMap, "fromMaterial"),
     (RayMaterial, "to"),
 }
-"""Attributes that are a material's name or a prefix of it."""
+"""Attributes whose value is a material's name or a prefix of one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Completion:
-    """A proposal. ``text`` replaces the word at the cursor; ``kind`` is element, attribute, value,
-    name or file."""
+    """A proposal.
+
+    ``text`` replaces the word at the cursor. ``kind`` is element, attribute, value, name or file.
+    """
 
     label: str
     text: str
@@ -66,7 +68,7 @@ class Completion:
 
 @dataclass(frozen=True, slots=True)
 class Grammar:
-    """A text and what may stand in it. ``names``: the project whose names can be referred to."""
+    """The text of a file with its language. ``names``: the project that references resolve in."""
 
     text: str
     yaml: bool
@@ -74,12 +76,13 @@ class Grammar:
     path: Path
     names: Project
 
-    def cursor(self, offset: int) -> Cursor:
+    def locate_cursor(self, offset: int) -> Cursor:
+        """Return the cursor before the character at ``offset``."""
         locate = locate_yaml_cursor if self.yaml else locate_xml_cursor
         return locate(self.text, offset)
 
-    def place(self, steps: tuple[Step, ...]) -> Place | None:
-        """The place inside the last of the steps; None where one is unknown."""
+    def find_place(self, steps: tuple[CursorStep, ...]) -> Place | None:
+        """Return the place inside the last of the steps; None where one is unknown."""
         if not self.yaml and (not steps or steps[0].tag not in ROOTS):
             return None
         tag = ("materialLib" if self.library else "project") if self.yaml else steps[0].tag
@@ -93,12 +96,12 @@ class Grammar:
 
 
 def complete(grammar: Grammar, offset: int) -> tuple[Cursor, list[Completion]]:
-    """The proposals at a character, and the cursor that says what they replace."""
-    cursor = grammar.cursor(offset)
-    return cursor, list(_proposals(grammar, cursor))
+    """Return the cursor at a character, whose word is to be replaced, and the proposals for it."""
+    cursor = grammar.locate_cursor(offset)
+    return cursor, list(_propose(grammar, cursor))
 
 
-def _proposals(grammar: Grammar, cursor: Cursor) -> Iterator[Completion]:
+def _propose(grammar: Grammar, cursor: Cursor) -> Iterator[Completion]:
     registry = grammar.names.registry
     if cursor.kind is CursorKind.END:
         if cursor.path and not grammar.yaml:
@@ -109,42 +112,42 @@ def _proposals(grammar: Grammar, cursor: Cursor) -> Iterator[Completion]:
         for tag in ("project", "materialLib"):
             yield Completion(tag, tag if cursor.end > cursor.begin else f"<{tag}", "element")
         return
-    place = grammar.place(cursor.path)
+    place = grammar.find_place(cursor.path)
     if place is None:
         return
     if cursor.kind is CursorKind.CHILD:
         bare = not grammar.text[: cursor.begin].endswith("<")
         for entry in children(place, registry):
             text = f"<{entry.name}" if bare else entry.name
-            yield Completion(entry.name, text, "element", _detail(entry), entry.doc)
+            yield Completion(entry.name, text, "element", _describe(entry), entry.doc)
     elif cursor.kind is CursorKind.ATTRIBUTE:
         rest = grammar.text[cursor.end :].lstrip(" ")[:1]
         for entry in attributes(place, registry):
             if entry.name not in cursor.path[-1].attributes:
                 text = entry.name if rest == "=" else f'{entry.name}=""'
-                yield Completion(entry.name, text, "attribute", _detail(entry), entry.doc)
+                yield Completion(entry.name, text, "attribute", _describe(entry), entry.doc)
     elif cursor.kind is CursorKind.KEY:
-        yield from _keys(grammar, cursor, place)
+        yield from _propose_keys(grammar, cursor, place)
     else:
-        yield from _values(grammar, cursor, place)
+        yield from _propose_values(grammar, cursor, place)
 
 
-def _keys(grammar: Grammar, cursor: Cursor, place: Place) -> Iterator[Completion]:
+def _propose_keys(grammar: Grammar, cursor: Cursor, place: Place) -> Iterator[Completion]:
     registry = grammar.names.registry
     given = cursor.path[-1].attributes if cursor.path else {}
     if cursor.path and cursor.path[-1].tag == ITEM and not given:
-        yield from _first_values(grammar, cursor, place)
+        yield from _propose_first_values(grammar, cursor, place)
     colon = "" if grammar.text[cursor.end :].lstrip(" ")[:1] == ":" else ":"
     for entry in attributes(place, registry):
         if entry.name not in given:
             text = f"{entry.name}{colon and ': '}"
-            yield Completion(entry.name, text, "attribute", _detail(entry), entry.doc)
+            yield Completion(entry.name, text, "attribute", _describe(entry), entry.doc)
     for entry in children(place, registry):
         text = f"{entry.name}{colon}"
-        yield Completion(entry.name, text, "element", _detail(entry), entry.doc)
+        yield Completion(entry.name, text, "element", _describe(entry), entry.doc)
 
 
-def _detail(entry: Entry) -> str:
+def _describe(entry: Entry) -> str:
     needed = "required, " if entry.required else ""
     attr = entry.attr
     if entry.attribute is not None:
@@ -156,22 +159,23 @@ def _detail(entry: Entry) -> str:
     return f"{needed}{attr.file} file" if attr.file else f"{needed}{attr.type.value}"
 
 
-def _values(grammar: Grammar, cursor: Cursor, place: Place) -> Iterator[Completion]:
+def _propose_values(grammar: Grammar, cursor: Cursor, place: Place) -> Iterator[Completion]:
     registry = grammar.names.registry
     entry = next((e for e in attributes(place, registry) if e.name == cursor.name), None)
     if entry is None and grammar.yaml:
         inner = enter_yaml(place, cursor.name, {}, registry)
         if inner is not None:
-            yield from _first_values(grammar, cursor, inner)
+            yield from _propose_first_values(grammar, cursor, inner)
         return
     given = cursor.path[-1].attributes if cursor.path else {}
     if entry is not None and entry.attr is not None:
-        yield from _of_entry(grammar, cursor, entry, entry.attr, given)
-    yield from _by_siblings(grammar, place, cursor.name, given)
+        yield from _propose_entry_values(grammar, cursor, entry, entry.attr, given)
+    yield from _propose_by_siblings(grammar, place, cursor.name, given)
 
 
-def _first_values(grammar: Grammar, cursor: Cursor, place: Place) -> Iterator[Completion]:
-    """Values of the first attribute: a scalar may stand for a node, a list for its items."""
+def _propose_first_values(grammar: Grammar, cursor: Cursor, place: Place) -> Iterator[Completion]:
+    """Propose values of the first attribute: in YAML a scalar may be written for a node, a list
+    for its items."""
     registry = grammar.names.registry
     if isinstance(place, Inside) and (plain := plain_lists(place.cls)):
         place = enter_yaml(plain[0], ITEM, {}, registry) or place
@@ -179,30 +183,32 @@ def _first_values(grammar: Grammar, cursor: Cursor, place: Place) -> Iterator[Co
         place = enter_yaml(place, ITEM, {}, registry) or place
     first = next(iter(attributes(place, registry)), None)
     if first is not None and first.attr is not None:
-        yield from _of_entry(grammar, cursor, first, first.attr, {})
+        yield from _propose_entry_values(grammar, cursor, first, first.attr, {})
 
 
-def _of_entry(
+def _propose_entry_values(
     grammar: Grammar, cursor: Cursor, entry: Entry, attr: Attr, given: dict[str, str]
 ) -> Iterator[Completion]:
     for value in attr.values:
         yield Completion(value, value, "value", doc=entry.doc)
     if attr.ref:
-        yield from _names(grammar, attr, entry.name, given)
+        yield from _propose_names(grammar, attr, entry.name, given)
     if attr.constant:
         for name, number in grammar.names.constants.items():
             yield Completion(name, name, "name", f"constant {number:g}")
     if attr.file:
-        yield from _files(grammar, cursor, attr.file)
+        yield from _propose_files(grammar, cursor, attr.file)
 
 
-def _names(grammar: Grammar, attr: Attr, key: str, given: dict[str, str]) -> Iterator[Completion]:
+def _propose_names(
+    grammar: Grammar, attr: Attr, key: str, given: dict[str, str]
+) -> Iterator[Completion]:
     known = [n for n in known_names(grammar.names, attr.ref) if not ("__" in n or "#" in n)]
     if not any("::" in name for name in known):
         for name in dict.fromkeys(known):
             yield Completion(name, name, "name", attr.ref)
         return
-    own = _own_library(grammar)
+    own = _library_name(grammar)
     library = given.get(attr.library, "") if attr.library else ""
     for name in known:
         home, _, short = name.partition("::")
@@ -213,12 +219,12 @@ def _names(grammar: Grammar, attr: Attr, key: str, given: dict[str, str]) -> Ite
         yield Completion(text, text, "name", f"{attr.ref} of {home}")
 
 
-def _own_library(grammar: Grammar) -> str:
+def _library_name(grammar: Grammar) -> str:
     mine = [lib.name for lib in grammar.names.libraries if Path(lib.file) == grammar.path]
     return (mine[0] if mine else "") or ""
 
 
-def _files(grammar: Grammar, cursor: Cursor, kind: str) -> Iterator[Completion]:
+def _propose_files(grammar: Grammar, cursor: Cursor, kind: str) -> Iterator[Completion]:
     if kind == "program":
         yield Completion(BUILTIN, BUILTIN, "value", "nau_py's own programs")
     begin = max(grammar.text.rfind(q, 0, cursor.end) for q in "\"' ") + 1
@@ -236,10 +242,10 @@ def _files(grammar: Grammar, cursor: Cursor, kind: str) -> Iterator[Completion]:
             yield Completion(name, prefix + name, "file", kind)
 
 
-def _by_siblings(
+def _propose_by_siblings(
     grammar: Grammar, place: Place, key: str, given: dict[str, str]
 ) -> Iterator[Completion]:
-    """Values that another attribute of the element decides."""
+    """Propose values that depend on another attribute of the element."""
     project = grammar.names
     set_ = project.registry.get(given.get("type", ""))
     if key == "component" and set_ is not None and given["type"] in OBJECT_TYPES:
@@ -259,13 +265,13 @@ def _by_siblings(
         for name in sorted(list_default_materials(project) or ()):
             yield Completion(name, name, "name", "material of a model")
     elif key == "ray":
-        for name in ray_types(project):
+        for name in list_ray_types(project):
             yield Completion(name, name, "name", "ray type")
     elif key == "type" and isinstance(place, Inside) and place.cls is Program:
         for name in ("RayGen", "Exception"):
             yield Completion(name, name, "value", "old dialect")
     elif key == "name" and isinstance(place, Inside) and place.cls is RayTypePrograms:
-        for name in ray_types(project):
+        for name in list_ray_types(project):
             yield Completion(name, name, "name", "ray type")
     elif key == "proc":
         if given.get("file") == BUILTIN:
@@ -273,7 +279,7 @@ def _by_siblings(
                 yield Completion(name, name, "value", kind.lower(), doc)
         else:
             source = stand_in(project.folder, given.get("file", ""))
-            for name in procedures(source) if source is not None else {}:
+            for name in list_procedures(source) if source is not None else {}:
                 yield Completion(name, name, "name", source.name if source else "")
     elif key == "class" and isinstance(place, Inside) and issubclass(place.cls, Pass):
         for name, cls in PASS_CLASSES.items():
@@ -282,8 +288,8 @@ def _by_siblings(
             )
 
 
-def ray_types(project: Project) -> list[str]:
-    """Every ray type that a pass of the project speaks of."""
+def list_ray_types(project: Project) -> list[str]:
+    """Return the ray types that the raytrace passes of a project use."""
     passes = [p for pipeline in project.pipelines for p in pipeline.passes]
     found = [name for p in passes if isinstance(p, RaytracePass) for name in p.ray_types]
     return list(dict.fromkeys(found))

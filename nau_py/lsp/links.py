@@ -1,4 +1,4 @@
-"""Where the words of a project lead outside of it: files, procedures of programs, uniforms."""
+"""Links from a project to other files: named files, procedures of programs, GLSL uniforms."""
 
 from __future__ import annotations
 
@@ -25,62 +25,62 @@ _WORD = re.compile(r"\w+")
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
-    """A word of the project, and the places that it leads to."""
+class SourceLink:
+    """A word of a project file, and the places that it refers to."""
 
     word: Symbol
     targets: tuple[Location, ...]
 
 
-def link_at(symbols: Symbols, file: str, offset: int) -> Link | None:
-    """The link at a character of a project file or library."""
-    for link in _links(symbols.project, file):
-        span = symbols.span(link.word)
+def find_link(symbols: Symbols, file: str, offset: int) -> SourceLink | None:
+    """Return the link at a character of a project file or library; None where there is none."""
+    for link in _collect_links(symbols.project, file):
+        span = symbols.find_span(link.word)
         if span is not None and span[1] <= offset <= span[2]:
             return link
     return None
 
 
-def _links(project: Project, file: str) -> Iterator[Link]:
+def _collect_links(project: Project, file: str) -> Iterator[SourceLink]:
     for node in nodes(project):
         if node.location.file != file:
             continue
         if isinstance(node, Program) and node.file and node.proc:
-            yield from _program(project, node)
+            yield from _link_procedure(project, node)
         for attribute in schema_of(type(node)).attributes:
             value = attribute.of(node)
             if not attribute.file or not isinstance(value, str):
                 continue
-            path = _path(project, node, attribute, value)
+            path = _resolve(project, node, attribute, value)
             if path is not None and value != BUILTIN:
                 where = node.where(attribute.name)
-                yield Link(Symbol("file", value, value, where), (Location(str(path), 1, 1),))
+                yield SourceLink(Symbol("file", value, value, where), (Location(str(path), 1, 1),))
         if isinstance(node, Material):
-            yield from _uniforms(project, node)
+            yield from _link_uniforms(project, node)
 
 
-def _path(project: Project, node: Node, attribute: AttributeField, value: str) -> Path | None:
+def _resolve(project: Project, node: Node, attribute: AttributeField, value: str) -> Path | None:
     if attribute.file == "program":
         return stand_in(project.folder, value)
     found = resolve(Path(node.where(attribute.name).file or ".").parent, value)
     return found.best if found.exists else None
 
 
-def _program(project: Project, node: Program) -> Iterator[Link]:
+def _link_procedure(project: Project, node: Program) -> Iterator[SourceLink]:
     path = stand_in(project.folder, node.file or "")
-    line = _line(path, node.proc or "") if path is not None else None
+    line = _find_line(path, node.proc or "") if path is not None else None
     if path is not None and line is not None:
         word = Symbol("procedure", node.proc or "", node.proc or "", node.where("proc"))
-        yield Link(word, (Location(str(path), line, 1),))
+        yield SourceLink(word, (Location(str(path), line, 1),))
 
 
-def _line(path: Path, proc: str) -> int | None:
-    known = procedures(path)
+def _find_line(path: Path, proc: str) -> int | None:
+    known = list_procedures(path)
     return known.get(proc, known.get(strip_decoration(proc)))
 
 
-def procedures(path: Path) -> dict[str, int]:
-    """Functions that a Python file defines, with their lines, by reading it."""
+def list_procedures(path: Path) -> dict[str, int]:
+    """Return the functions that a Python file defines, with their lines. The file is not run."""
     try:
         tree = ast.parse(path.read_bytes(), str(path))
     except (OSError, SyntaxError, ValueError):
@@ -88,13 +88,13 @@ def procedures(path: Path) -> dict[str, int]:
     return {n.name: n.lineno for n in tree.body if isinstance(n, ast.FunctionDef)}
 
 
-def shader_files(shader: Shader) -> list[Path]:
-    """The GLSL files of a shader."""
+def list_shader_files(shader: Shader) -> list[Path]:
+    """Return the GLSL files of a shader."""
     folder = Path(shader.location.file).parent
     return [resolve(folder, f).best for stage in STAGES for f in shader.files(stage)]
 
 
-def _shader_of(project: Project, material: Material) -> Shader | None:
+def _find_shader(project: Project, material: Material) -> Shader | None:
     if material.shader is None:
         return None
     for library in project.libraries:
@@ -104,21 +104,21 @@ def _shader_of(project: Project, material: Material) -> Shader | None:
     return None
 
 
-def _uniforms(project: Project, material: Material) -> Iterator[Link]:
-    shader = _shader_of(project, material)
+def _link_uniforms(project: Project, material: Material) -> Iterator[SourceLink]:
+    shader = _find_shader(project, material)
     if shader is None or material.shader is None:
         return
-    files = shader_files(shader)
+    files = list_shader_files(shader)
     for value in material.shader.values:
         if value.uniform:
-            targets = tuple(w for f in files for w in declared(f, value.uniform))
+            targets = tuple(w for f in files for w in find_uniform(f, value.uniform))
             if targets:
                 word = Symbol("uniform", value.uniform, value.uniform, value.where("uniform"))
-                yield Link(word, targets)
+                yield SourceLink(word, targets)
 
 
-def declared(path: Path, uniform: str) -> Iterator[Location]:
-    """Where a GLSL file declares a uniform."""
+def find_uniform(path: Path, uniform: str) -> Iterator[Location]:
+    """Return the places at which a GLSL file declares a uniform."""
     try:
         text = path.read_text("utf-8", "replace")
     except OSError:
@@ -129,15 +129,15 @@ def declared(path: Path, uniform: str) -> Iterator[Location]:
         yield Location(str(path), text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at))
 
 
-def uses_of_word(project: Project, path: Path, text: str, offset: int) -> list[Location]:
-    """Where a project speaks of the word at a character of one of its GLSL or program files: the
-    sources of a uniform, the bindings of a procedure."""
+def find_bindings(project: Project, path: Path, text: str, offset: int) -> list[Location]:
+    """Return the places of a project that use the word at a character of one of its GLSL or
+    program files: the sources of a uniform, the bindings of a procedure."""
     word = next((m[0] for m in _WORD.finditer(text) if m.start() <= offset <= m.end()), "")
     found: list[Location] = []
     for node in nodes(project):
         if isinstance(node, Material) and node.shader is not None:
-            shader = _shader_of(project, node)
-            if shader is not None and path in [f.resolve() for f in shader_files(shader)]:
+            shader = _find_shader(project, node)
+            if shader is not None and path in [f.resolve() for f in list_shader_files(shader)]:
                 found += [
                     v.where("uniform")
                     for v in node.shader.values

@@ -18,11 +18,14 @@ from nau_py.syntax.language import YAML_SUFFIXES, is_yaml
 
 _SUFFIXES = (".xml", ".mlib", *YAML_SUFFIXES)
 _MOST = 2000
-"""Files of a workspace that are looked at for projects."""
+"""The most files of a workspace that are searched for projects."""
 
 
-class Session:
-    """``folders``: where projects are looked for that use a file. Paths are absolute."""
+class EditorSession:
+    """Texts and projects of one editor.
+
+    ``folders``: the folders that are searched for projects that use a file. Paths are absolute.
+    """
 
     def __init__(self, folders: list[Path] | None = None) -> None:
         self.folders = folders or []
@@ -30,16 +33,16 @@ class Session:
         self._good: dict[Path, Project] = {}
         self._known: dict[Path, tuple[dict[Path, Stamp | str], Project]] = {}
 
-    def set(self, path: Path, text: str) -> None:
-        """The editor's text of a file."""
+    def set_text(self, path: Path, text: str) -> None:
+        """Keep the editor's text of a file."""
         self.texts[path.resolve()] = text
 
-    def close(self, path: Path) -> None:
-        """The file on disk counts again."""
+    def forget_text(self, path: Path) -> None:
+        """Drop the editor's text of a file: the file on disk is read again."""
         self.texts.pop(path.resolve(), None)
 
-    def text(self, path: Path) -> str:
-        """The text of a file, as the editor has it or as it is on disk; empty for none."""
+    def read_text(self, path: Path) -> str:
+        """Return the text of a file, from the editor or else from disk; empty for none."""
         found = self.texts.get(path.resolve())
         if found is not None:
             return found
@@ -49,28 +52,28 @@ class Session:
             return ""
 
     def is_project_file(self, path: Path) -> bool:
-        """Whether a file is a project or a library."""
+        """Report if a file is a project or a library."""
         if path.suffix.lower() not in _SUFFIXES:
             return False
-        text = self.text(path)
+        text = self.read_text(path)
         if path.suffix.lower() == ".xml":
             return "<project" in text[:4096]
         return is_library(path) or "pipelines:" in text or "assets:" in text
 
     def load(self, path: Path) -> Project:
-        """The project or library of a file, by the editor's texts."""
-        now = self._now(path)
+        """Load the project or library of a file with the editor's texts."""
+        now = self._stamp_sources(path)
         known = self._known.get(path)
         if known is not None and known[0] == now:
             return known[1]
         project = (load_library if is_library(path) else load_project)(path, self.texts)
-        self._known[path] = (self._now(path, project), project)
+        self._known[path] = (self._stamp_sources(path, project), project)
         if project.file.tag or len(project.libraries) > 1:
             self._good[path] = project
         return project
 
-    def _now(self, path: Path, project: Project | None = None) -> dict[Path, Stamp | str]:
-        """What the project was made of, or would be now."""
+    def _stamp_sources(self, path: Path, project: Project | None = None) -> dict[Path, Stamp | str]:
+        """Return the present state of the files that a project was loaded from."""
         if project is None:
             known = self._known.get(path)
             sources = list(known[0]) if known is not None else [path]
@@ -78,15 +81,17 @@ class Session:
             sources = [Path(p) for p in project.sources]
         return {p: self.texts.get(p.resolve()) or stamp(p) for p in sources}
 
-    def diagnostics(self, path: Path) -> list[Diagnostic]:
-        """Lint's findings about a project or library, in all its files."""
+    def lint_file(self, path: Path) -> list[Diagnostic]:
+        """Lint a project or library, in all its files."""
         forget_folders()
         return lint(self.load(path))
 
-    def grammar(self, path: Path) -> Grammar:
-        """What may stand in a file. Names come from a project that uses it, or from its last
-        state that could be read."""
-        text = self.text(path)
+    def make_grammar(self, path: Path) -> Grammar:
+        """Return the grammar of a file.
+
+        Names are those of a project that uses it, or of its last state that could be read.
+        """
+        text = self.read_text(path)
         library = is_library(path)
         yaml = is_yaml(path)
         self.load(path)
@@ -95,32 +100,32 @@ class Session:
             names = next(self._users(path), names)
         return Grammar(text, yaml, library, path, names)
 
-    def symbols(self, path: Path) -> Symbols:
-        """The names that a file speaks of, as a project that uses it has them."""
+    def find_symbols(self, path: Path) -> Symbols:
+        """Return the names of a file, as a project that uses it resolves them."""
         if is_library(path) or not self.is_project_file(path):
             user = next(self._users(path), None)
             if user is not None:
                 return Symbols(user)
         return Symbols(self.load(path))
 
-    def all_symbols(self, path: Path) -> list[Symbols]:
-        """Those of every project that uses a file: what a rename must change."""
+    def find_all_symbols(self, path: Path) -> list[Symbols]:
+        """Return the names of every project that uses a file; a rename must change them all."""
         found = [Symbols(project) for project in self._users(path)]
-        return found or [self.symbols(path)]
+        return found or [self.find_symbols(path)]
 
     def _users(self, path: Path) -> Iterator[Project]:
-        """The projects, open ones first, that use a file or are it."""
+        """Load the projects that use a file or are it, open ones first."""
         wanted = path.resolve()
-        for other in self._projects():
+        for other in self._list_projects():
             project = self.load(other)
             if wanted == other.resolve() or wanted in used_files(project):
                 yield project
 
-    def users(self, path: Path) -> list[Project]:
-        """The projects that use a file."""
+    def find_users(self, path: Path) -> list[Project]:
+        """Return the projects that use a file."""
         return list(self._users(path))
 
-    def _projects(self) -> list[Path]:
+    def _list_projects(self) -> list[Path]:
         found = [p for p in self.texts if self.is_project_file(p) and not is_library(p)]
         looked = 0
         for folder in self.folders:

@@ -1,4 +1,4 @@
-"""The names of a project: where each is defined, and where it is used."""
+"""The names of a project, with the places that define and use each."""
 
 from __future__ import annotations
 
@@ -27,13 +27,15 @@ from nau_py.syntax.document import Document
 from nau_py.syntax.edit import make_document
 
 Span = tuple[str, int, int]
-"""File, and the characters of its text from begin to end."""
+"""A file, with the begin and the end of a word in characters of its text."""
 
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """One place where a name is written. ``name`` is the qualified one, ``text`` what stands
-    there of it."""
+    """One place at which a name is written.
+
+    ``name`` is the qualified name, ``text`` the part of it that is written there.
+    """
 
     kind: str
     name: str
@@ -51,14 +53,14 @@ class Symbols:
 
     @cached_property
     def definitions(self) -> list[Symbol]:
-        return list(_definitions(self.project))
+        return list(_collect_definitions(self.project))
 
     @cached_property
     def references(self) -> list[Symbol]:
-        return list(_references(self.project))
+        return list(_collect_references(self.project))
 
-    def document(self, file: str) -> Document | None:
-        """The text of a file of the project."""
+    def find_document(self, file: str) -> Document | None:
+        """Return the text of a file of the project; None for another file."""
         if file not in self._documents:
             text = self.project.sources.get(file)
             if text is None:
@@ -66,26 +68,26 @@ class Symbols:
             self._documents[file] = make_document(Path(file), text)
         return self._documents[file]
 
-    def span(self, symbol: Symbol) -> Span | None:
-        """The characters of a name; None where the text does not have it there."""
-        document = self.document(symbol.location.file)
+    def find_span(self, symbol: Symbol) -> Span | None:
+        """Return the characters of a name; None where the text differs."""
+        document = self.find_document(symbol.location.file)
         if document is None or not symbol.text:
             return None
         change = Change(symbol.location, symbol.part, symbol.text, "?")
         edits = document.make_change(change)
         return (symbol.location.file, edits[0][0], edits[0][1]) if edits else None
 
-    def at(self, file: str, offset: int) -> Symbol | None:
-        """The name that is written at a character."""
+    def find_symbol(self, file: str, offset: int) -> Symbol | None:
+        """Return the name at a character; None where there is none."""
         for symbol in [*self.definitions, *self.references]:
             if symbol.location.file == file:
-                span = self.span(symbol)
+                span = self.find_span(symbol)
                 if span is not None and span[1] <= offset <= span[2]:
                     return symbol
         return None
 
-    def same(self, symbol: Symbol) -> tuple[list[Symbol], list[Symbol]]:
-        """The definitions and the references of a symbol's name."""
+    def find_same(self, symbol: Symbol) -> tuple[list[Symbol], list[Symbol]]:
+        """Return the definitions and the references of a symbol's name."""
         wanted = (symbol.kind, symbol.name)
         return (
             [s for s in self.definitions if (s.kind, s.name) == wanted],
@@ -93,7 +95,7 @@ class Symbols:
         )
 
 
-def _named(kind: str, nodes: list[Node], library: str = "") -> Iterator[Symbol]:
+def _name_symbols(kind: str, nodes: list[Node], library: str = "") -> Iterator[Symbol]:
     for node in nodes:
         name = getattr(node, "name", None)
         if name:
@@ -101,53 +103,53 @@ def _named(kind: str, nodes: list[Node], library: str = "") -> Iterator[Symbol]:
             yield Symbol(kind, full, name, node.where("name"))
 
 
-def _definitions(project: Project) -> Iterator[Symbol]:
+def _collect_definitions(project: Project) -> Iterator[Symbol]:
     assets = project.assets
-    yield from _named("scene", [*assets.scenes])
-    yield from _named("camera", [*assets.cameras])
-    yield from _named("viewport", [*assets.viewports])
-    yield from _named("light", [*assets.lights])
-    yield from _named("constant", [*assets.constants, *assets.aliases])
-    yield from _named("pipeline", [*project.pipelines])
+    yield from _name_symbols("scene", [*assets.scenes])
+    yield from _name_symbols("camera", [*assets.cameras])
+    yield from _name_symbols("viewport", [*assets.viewports])
+    yield from _name_symbols("light", [*assets.lights])
+    yield from _name_symbols("constant", [*assets.constants, *assets.aliases])
+    yield from _name_symbols("pipeline", [*project.pipelines])
     for attribute in assets.attributes:
-        yield from _named(f"attribute of {attribute.type}", [attribute])
+        yield from _name_symbols(f"attribute of {attribute.type}", [attribute])
     for pipeline in project.pipelines:
-        yield from _named("pass", [*pipeline.passes])
+        yield from _name_symbols("pass", [*pipeline.passes])
         for pass_ in pipeline.passes:
             if isinstance(pass_, RaytracePass):
-                yield from _named("ray type", [*pass_.rtRayTypes])
+                yield from _name_symbols("ray type", [*pass_.rtRayTypes])
     for library in project.libraries[1:]:
         name = library.name or ""
-        yield from _named("library", [library])
-        yield from _named("material", [*library.materials], name)
-        yield from _named("shader", [*library.shaders], name)
-        yield from _named("state", [*library.states], name)
-        yield from _named("render target", [*library.renderTargets], name)
-        yield from _named("texture array", [*library.arraysOfTextures], name)
-        yield from _named("buffer", [*library.buffers], name)
-        yield from _named("texture", [*library.textures], name)
+        yield from _name_symbols("library", [library])
+        yield from _name_symbols("material", [*library.materials], name)
+        yield from _name_symbols("shader", [*library.shaders], name)
+        yield from _name_symbols("state", [*library.states], name)
+        yield from _name_symbols("render target", [*library.renderTargets], name)
+        yield from _name_symbols("texture array", [*library.arraysOfTextures], name)
+        yield from _name_symbols("buffer", [*library.buffers], name)
+        yield from _name_symbols("texture", [*library.textures], name)
         for target in library.renderTargets:
-            yield from _named("texture", [*target.colors], name)
+            yield from _name_symbols("texture", [*target.colors], name)
             hidden = [d for d in (target.depth, target.depthStencil) if d is not None]
-            yield from _named("texture", [*hidden], name)
+            yield from _name_symbols("texture", [*hidden], name)
 
 
-def _references(project: Project) -> Iterator[Symbol]:
+def _collect_references(project: Project) -> Iterator[Symbol]:
     buffers = set(known_names(project, "buffer"))
     scenes = {scene.name for scene in project.assets.scenes}
     for node, library in owned_nodes(project):
         schema = schema_of(type(node))
         for attribute in schema.attributes:
-            for symbol in _attribute(node, attribute, library, buffers):
+            for symbol in _attribute_symbols(node, attribute, library, buffers):
                 if symbol.kind == "scene" and symbol.name not in scenes:
                     symbol = replace(symbol, kind="camera")  # cameras are scenes too
                 yield symbol
         for part in [*schema.settings, *schema.inline]:
-            yield from _settings(project, node, part)
-        yield from _special(node)
+            yield from _setting_symbols(project, node, part)
+        yield from _special_symbols(node)
 
 
-def _attribute(
+def _attribute_symbols(
     node: Node, attribute: AttributeField, library: str, buffers: set[str]
 ) -> Iterator[Symbol]:
     value = attribute.of(node)
@@ -165,7 +167,7 @@ def _attribute(
         yield Symbol("library", head, head, where)
 
 
-def _settings(project: Project, node: Node, part: SettingsField) -> Iterator[Symbol]:
+def _setting_symbols(project: Project, node: Node, part: SettingsField) -> Iterator[Symbol]:
     for tag, setting in part.of(node).items():
         attribute = part.known(project.registry).get(tag)
         if part.as_tags:
@@ -180,8 +182,8 @@ def _settings(project: Project, node: Node, part: SettingsField) -> Iterator[Sym
                 yield Symbol("constant", value, value, setting.location)
 
 
-def _special(node: Node) -> Iterator[Symbol]:
-    """Names whose kind another attribute says, or that models define too."""
+def _special_symbols(node: Node) -> Iterator[Symbol]:
+    """Yield names whose kind depends on another attribute, or that model files define."""
     if isinstance(node, ValueOf | RayVariable | InterfaceVariable) and node.type:
         kind = CONTEXTS.get(node.type)
         if kind and node.context and node.context != "CURRENT":

@@ -23,7 +23,7 @@ class CursorKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class CursorStep:
     """One element on the way from the root, with the attributes that are written so far."""
 
     tag: str
@@ -39,7 +39,7 @@ class Cursor:
     """
 
     kind: CursorKind
-    path: tuple[Step, ...]
+    path: tuple[CursorStep, ...]
     name: str
     begin: int
     end: int

@@ -30,6 +30,18 @@ def apply_edits(text: str, edits: Iterable[Edit]) -> str:
     return text
 
 
+def find_offset(text: str, location: Location) -> int:
+    """Return the character at a location; the end of its line where that is shorter."""
+    begin = 0
+    for _ in range(location.line - 1):
+        found = text.find("\n", begin)
+        if found < 0:
+            return len(text)
+        begin = found + 1
+    end = text.find("\n", begin)
+    return min(begin + max(location.column - 1, 0), len(text) if end < 0 else end)
+
+
 def is_same_value(one: str, other: str) -> bool:
     """Report if two texts are the same value: 1.0 is 1."""
     try:
@@ -68,13 +80,7 @@ class Document(ABC):
 
     def offset(self, location: Location) -> int:
         """Return the character at a location; the end of its line where that is shorter."""
-        begin = 0
-        for _ in range(location.line - 1):
-            found = self.text.find("\n", begin)
-            if found < 0:
-                return len(self.text)
-            begin = found + 1
-        return min(begin + max(location.column - 1, 0), self.line_end(begin))
+        return find_offset(self.text, location)
 
     def line_begin(self, offset: int) -> int:
         """Return the first character of the line that ``offset`` is in."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from nau_py.syntax.cursor import Cursor, CursorKind, Step
+from nau_py.syntax.cursor import Cursor, CursorKind, CursorStep
 from nau_py.syntax.xml_markup import TokenGroup, split_markup
 from nau_py.syntax.xml_tokens import Token, TokenKind
 
@@ -19,7 +19,7 @@ _VALUE_REST = {
 
 def locate_xml_cursor(text: str, offset: int) -> Cursor:
     """Return the cursor before the character at ``offset``."""
-    path: list[Step] = []
+    path: list[CursorStep] = []
     for markup in split_markup(text):
         if markup.begin >= offset:
             break
@@ -38,7 +38,7 @@ def locate_xml_cursor(text: str, offset: int) -> Cursor:
     return Cursor(CursorKind.CHILD, tuple(path), "", offset, offset)
 
 
-def _leave(path: list[Step], tag: str) -> None:
+def _leave(path: list[CursorStep], tag: str) -> None:
     """End the innermost element of that name, and the elements in it that are still open."""
     for index in range(len(path) - 1, -1, -1):
         if path[index].tag == tag:
@@ -46,12 +46,12 @@ def _leave(path: list[Step], tag: str) -> None:
             return
 
 
-def _step(markup: TokenGroup) -> Step:
+def _step(markup: TokenGroup) -> CursorStep:
     attributes = markup.attributes().items()
-    return Step(markup.name, {n: a.value.value for n, a in attributes if a.value.closed})
+    return CursorStep(markup.name, {n: a.value.value for n, a in attributes if a.value.closed})
 
 
-def _locate_in_tag(text: str, offset: int, markup: TokenGroup, path: list[Step]) -> Cursor:
+def _locate_in_tag(text: str, offset: int, markup: TokenGroup, path: list[CursorStep]) -> Cursor:
     begin, end = markup.name_span
     if offset <= end:
         return Cursor(CursorKind.CHILD, tuple(path), "", begin, end)

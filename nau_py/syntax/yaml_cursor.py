@@ -1,150 +1,165 @@
-"""Where in a YAML text a cursor stands: by indentation, so that half-written texts work."""
+"""Find what is written at a cursor in YAML, by indentation: half-written text is allowed."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from nau_py.syntax.cursor import ITEM, Cursor, CursorKind, Step
+from nau_py.syntax.cursor import ITEM, Cursor, CursorKind, CursorStep
 
 _LINE = re.compile(r"(?P<blank>[ ]*)(?P<dashes>(?:-[ ]+)*)(?P<rest>.*)$")
 _KEY = re.compile(r"(?P<key>[^\s:#,{}\[\]\"'][^:#,{}\[\]]*?)[ ]*:(?:[ ]+|$)")
-_FLOW = re.compile(r"([^\s:,{}\[\]]+)\s*:\s*([^,{}\[\]]*)")
+_FLOW_ENTRY = re.compile(r"([^\s:,{}\[\]]+)\s*:\s*([^,{}\[\]]*)")
+_DASH = re.compile(r"-[ ]+")
+_WORD_REST = re.compile(r"[^\s,:#\]}\"']*")
 
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    indents: tuple[int, ...]
-    """Columns of its dashes, then of what follows them."""
+    """A line of block style: the columns of its dashes, and the column of the rest."""
+
+    dashes: tuple[int, ...]
+    column: int
     key: str
+    """The key that the rest begins with; empty for none."""
     rest: str
+    rest_begin: int
+    """The index in ``rest`` of the value behind the key; 0 for a line without a key."""
 
     @property
-    def column(self) -> int:
-        return self.indents[-1]
+    def value(self) -> str:
+        """The scalar behind the key, without comment and quotes."""
+        _, _, value = self.rest.partition(":")
+        return value.split(" #")[0].strip().strip("\"'")
+
+    @property
+    def is_blank(self) -> bool:
+        """Report if there is nothing but a comment."""
+        empty = not self.rest.strip() or self.rest.startswith("#")
+        return empty and not self.dashes
 
 
-def _line(text: str) -> _Line | None:
+def _scan_line(text: str) -> _Line:
     found = _LINE.match(text)
-    if found is None:
-        return None
-    empty = not found["rest"].strip() or found["rest"].startswith("#")
-    if empty and not found["dashes"].strip():
-        return None
-    column = len(found["blank"])
-    indents = []
-    for dash in re.finditer(r"-[ ]+", found["dashes"]):
-        indents.append(column + dash.start())
-    indents.append(column + len(found["dashes"]))
+    assert found is not None  # it matches every line
+    begin = len(found["blank"])
+    dashes = tuple(begin + dash.start() for dash in _DASH.finditer(found["dashes"]))
     key = _KEY.match(found["rest"])
-    return _Line(tuple(indents), key["key"] if key else "", found["rest"])
+    return _Line(
+        dashes,
+        begin + len(found["dashes"]),
+        key["key"] if key else "",
+        found["rest"],
+        key.end() if key else 0,
+    )
+
+
+def _scan_lines(lines: Iterable[str]) -> Iterator[_Line]:
+    for text in lines:
+        line = _scan_line(text)
+        if not line.is_blank:
+            yield line
 
 
 def locate_yaml_cursor(text: str, offset: int) -> Cursor:
-    """The cursor before the character at ``offset``."""
+    """Return the cursor before the character at ``offset``."""
     begin = text.rfind("\n", 0, offset) + 1
     end = text.find("\n", offset)
     whole = text[begin : len(text) if end < 0 else end]
     before = whole[: offset - begin]
     if " #" in before or before.lstrip().startswith("#"):
         return Cursor(CursorKind.END, (), "", offset, offset)
-    lines = text[:begin].split("\n")[:-1] if begin else []
-    after = text[begin + len(whole) + 1 :].split("\n")
-    shape = _LINE.match(before)
-    assert shape is not None  # it matches every line
-    blank, dashes, rest = shape["blank"], shape["dashes"], shape["rest"]
-    column = len(blank) + len(dashes)
-    dash_columns = tuple(len(blank) + m.start() for m in re.finditer(r"-[ ]+", dashes))
-    path = _above(lines, after, (*dash_columns, column), before, whole)
-    key = _KEY.match(rest)
-    if key is None:
-        return _word(CursorKind.KEY, path, "", text, offset, rest)
-    if "{" in rest[key.end() :] or rest.startswith("{"):
-        return _flow(path, key["key"], rest[key.end() :], text, offset)
-    return _word(CursorKind.VALUE, path, key["key"], text, offset, rest[key.end() :])
+    line = _scan_line(before)
+    above = text[:begin].split("\n")[:-1] if begin else []
+    below = text[begin + len(whole) + 1 :].split("\n")
+    path = _find_path(above, below, line, _scan_line(whole))
+    written = line.rest[line.rest_begin :]
+    if not line.key:
+        return _make_cursor(CursorKind.KEY, path, "", text, offset, line.rest)
+    if "{" in written or line.rest.startswith("{"):
+        return _locate_in_flow(path, line.key, written, text, offset)
+    return _make_cursor(CursorKind.VALUE, path, line.key, text, offset, written)
 
 
-def _word(
-    kind: CursorKind, path: tuple[Step, ...], name: str, text: str, offset: int, written: str
+def _make_cursor(
+    kind: CursorKind,
+    path: tuple[CursorStep, ...],
+    name: str,
+    text: str,
+    offset: int,
+    written: str,
 ) -> Cursor:
+    """Return the cursor in the last word of ``written``, the text up to ``offset``."""
     word = written.lstrip("\"' [")
     word = word[max(word.rfind(","), word.rfind("{")) + 1 :].lstrip()
-    found = re.compile(r"[^\s,:#\]}\"']*").match(text, offset)
-    return Cursor(kind, path, name, offset - len(word), found.end() if found else offset)
+    rest = _WORD_REST.match(text, offset)
+    return Cursor(kind, path, name, offset - len(word), rest.end() if rest else offset)
 
 
-def _flow(path: tuple[Step, ...], key: str, rest: str, text: str, offset: int) -> Cursor:
-    """Inside ``key: {a: 1, …``."""
-    inside = rest[rest.index("{") + 1 :]
-    pairs = {m[1]: m[2].strip() for m in _FLOW.finditer(inside)}
-    here = (*path, Step(key, pairs))
+def _locate_in_flow(
+    path: tuple[CursorStep, ...], key: str, written: str, text: str, offset: int
+) -> Cursor:
+    """Return the cursor inside of ``key: {a: 1, ...``."""
+    inside = written[written.index("{") + 1 :]
+    pairs = {m[1]: m[2].strip() for m in _FLOW_ENTRY.finditer(inside)}
+    here = (*path, CursorStep(key, pairs))
     last = inside[inside.rfind(",") + 1 :]
     name, colon, value = last.partition(":")
     if colon:
-        return _word(CursorKind.VALUE, here, name.strip(), text, offset, value)
-    return _word(CursorKind.KEY, here, "", text, offset, last)
+        return _make_cursor(CursorKind.VALUE, here, name.strip(), text, offset, value)
+    return _make_cursor(CursorKind.KEY, here, "", text, offset, last)
 
 
-def _above(
-    lines: list[str], after: list[str], columns: tuple[int, ...], before: str, whole: str
-) -> tuple[Step, ...]:
-    """The steps from the root to the map that holds the cursor's line."""
-    steps: list[Step] = []
-    current = _line(whole)
-    siblings = {current.key: _scalar(current.rest)} if current and current.key else {}
-    follow = _siblings_below(after, columns[-1])
-    wanted = columns[-1]
-    pending = list(columns[:-1])  # dashes of the own line
-    attributes = siblings | follow
-    while pending:
-        steps.append(Step(ITEM, attributes))
-        wanted, attributes = pending.pop(), {}
-    for text in reversed(lines):
-        line = _line(text)
-        if line is None:
-            continue
-        if line.column == wanted and len(line.indents) == 1:
-            if line.key and steps and steps[-1].tag == ITEM:  # dashes may stand below their key
-                steps.append(Step(line.key, attributes))
+def _find_path(
+    above: list[str], below: list[str], before: _Line, whole: _Line
+) -> tuple[CursorStep, ...]:
+    """Return the steps from the root to the map that holds the cursor's line.
+
+    ``before`` is the line up to the cursor, ``whole`` all of it.
+    """
+    steps: list[CursorStep] = []
+    column = before.column
+    attributes = {whole.key: whole.value} if whole.key else {}
+    attributes |= _siblings_below(below, column)
+    for dash in reversed(before.dashes):
+        steps.append(CursorStep(ITEM, attributes))
+        column, attributes = dash, {}
+    for line in _scan_lines(reversed(above)):
+        if line.column == column and not line.dashes:
+            if line.key and steps and steps[-1].tag == ITEM:  # a list may not be indented
+                steps.append(CursorStep(line.key, attributes))
                 attributes = {}
             elif line.key:
-                attributes.setdefault(line.key, _scalar(line.rest))
+                attributes.setdefault(line.key, line.value)
             continue
-        if line.column == wanted:  # the first line of the item that the cursor is in
+        if line.column == column:  # the first line of the item that the cursor is in
             if line.key:
-                attributes.setdefault(line.key, _scalar(line.rest))
-            for dash in reversed(line.indents[:-1]):
-                steps.append(Step(ITEM, attributes))
-                wanted, attributes = dash, {}
+                attributes.setdefault(line.key, line.value)
+            for dash in reversed(line.dashes):
+                steps.append(CursorStep(ITEM, attributes))
+                column, attributes = dash, {}
             continue
-        inner = [i for i in line.indents if i <= wanted]
-        if line.column < wanted and line.key:
-            steps.append(Step(line.key, attributes))
-            wanted, attributes = line.column, {line.key: ""}
-            for dash in reversed(line.indents[:-1]):
-                steps.append(Step(ITEM, attributes))
-                wanted, attributes = dash, {}
-        elif inner and inner[0] == wanted and len(line.indents) > 1:
+        if line.column < column and line.key:
+            steps.append(CursorStep(line.key, attributes))
+            column, attributes = line.column, {line.key: ""}
+            for dash in reversed(line.dashes):
+                steps.append(CursorStep(ITEM, attributes))
+                column, attributes = dash, {}
+        elif line.dashes and line.dashes[0] == column:
             continue  # another item of the same list
-        if wanted == 0 and steps and steps[-1].tag != ITEM:
+        if column == 0 and steps and steps[-1].tag != ITEM:
             break
     return tuple(reversed(steps))
 
 
-def _siblings_below(after: list[str], column: int) -> dict[str, str]:
+def _siblings_below(below: list[str], column: int) -> dict[str, str]:
+    """Return the keys of the same map in the lines below."""
     found: dict[str, str] = {}
-    for text in after:
-        line = _line(text)
-        if line is None:
-            continue
-        first = line.indents[0]
-        if first < column or (len(line.indents) > 1 and first <= column):
+    for line in _scan_lines(below):
+        first = line.dashes[0] if line.dashes else line.column
+        if first < column or (line.dashes and first <= column):
             break
         if line.column == column and line.key:
-            found.setdefault(line.key, _scalar(line.rest))
+            found.setdefault(line.key, line.value)
     return found
-
-
-def _scalar(rest: str) -> str:
-    _, _, value = rest.partition(":")
-    return value.split(" #")[0].strip().strip("\"'")
