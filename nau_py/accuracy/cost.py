@@ -263,9 +263,9 @@ def _again(sweep: _Sweep, candidate: Candidate) -> Measured:
 
 
 def _device() -> str:
-    from nau_py.raster.device import device
+    from nau_py.raster.device import get_device
 
-    return device().renderer
+    return get_device().renderer
 
 
 def _spp(project: Project, pipeline: Pipeline, candidate: Candidate) -> int:

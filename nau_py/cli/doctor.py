@@ -28,9 +28,9 @@ def examine() -> int:
     status = 0
     print(f"nau_py      {__version__}, Python {platform.python_version()}, {platform.platform()}")
     try:
-        from nau_py.raster.device import device
+        from nau_py.raster.device import get_device
 
-        found = device()
+        found = get_device()
         kind = "software" if found.is_software else "hardware"
         print(f"OpenGL      {found.version} on {found.renderer} ({kind})")
     except DeviceError as problem:

@@ -20,7 +20,7 @@ _SWEEPS = 8
 
 
 @dataclass(frozen=True, slots=True)
-class Link:
+class DrawnEdge:
     """One arrow of the picture, from ``source`` to ``target``, with the attributes of its edge.
 
     ``upward``: it leads to a lower layer. ``both``: the pass reads the resource and writes it, so
@@ -46,14 +46,14 @@ class Link:
         return self.source if self.upward else self.target
 
 
-def list_links(graph: Network) -> list[Link]:
+def list_links(graph: Network) -> list[DrawnEdge]:
     """List the arrows of a picture: each access once, and the order that no access shows.
 
     A resource has its place after its first writers: those that come before anyone reads. A pass
     that writes it later, or that reads the previous frame's content, has an upward arrow.
     """
     index = number_passes(graph)
-    links: list[Link] = []
+    links: list[DrawnEdge] = []
     for resource in list_resources(graph):
         writers = sorted(graph.predecessors(resource), key=index.__getitem__)
         readers = sorted(graph.successors(resource), key=index.__getitem__)
@@ -69,16 +69,16 @@ def list_links(graph: Network) -> list[Link]:
             both = node in readers
             critical = bool(edge.get("critical"))
             if first or not both:
-                links.append(Link(node, resource, "write", not first, both, critical=critical))
+                links.append(DrawnEdge(node, resource, "write", not first, both, critical=critical))
             else:
-                links.append(Link(resource, node, "read", both=True, critical=critical))
+                links.append(DrawnEdge(resource, node, "read", both=True, critical=critical))
         for node in readers:
             if node in writers:
                 continue
             edge = graph.edges[resource, node]
             previous = bool(edge["previous_frame"])
             links.append(
-                Link(
+                DrawnEdge(
                     resource,
                     node,
                     "read",
@@ -89,11 +89,11 @@ def list_links(graph: Network) -> list[Link]:
             )
     for earlier, later, edge in reduce_order(graph).edges(data=True):
         if not any(hazard["hazard"] == "read after write" for hazard in edge["hazards"]):
-            links.append(Link(earlier, later, "order", critical=bool(edge.get("critical"))))
+            links.append(DrawnEdge(earlier, later, "order", critical=bool(edge.get("critical"))))
     return links
 
 
-def rank_nodes(graph: Network, links: list[Link]) -> dict[str, int]:
+def rank_nodes(graph: Network, links: list[DrawnEdge]) -> dict[str, int]:
     """Assign a layer to each node: the longest path to it from any first pass.
 
     Passes get even layers and resources odd ones. A resource that nothing writes goes one layer
@@ -130,7 +130,7 @@ class Layers:
     chains: list[list[str]]
 
 
-def make_layers(graph: Network, links: list[Link]) -> Layers:
+def make_layers(graph: Network, links: list[DrawnEdge]) -> Layers:
     """Assign layers, add waypoints, and order the nodes within the layers."""
     rank = rank_nodes(graph, links)
     low = min(rank.values(), default=0)
@@ -147,7 +147,7 @@ def make_layers(graph: Network, links: list[Link]) -> Layers:
     return _uncross(Layers(rows, chains))
 
 
-def _first_order(graph: Network, links: list[Link]) -> list[str]:
+def _first_order(graph: Network, links: list[DrawnEdge]) -> list[str]:
     """List the nodes so that each pass comes with the resources that it meets first."""
     found: dict[str, None] = {}
     for node in list_passes(graph):

@@ -9,7 +9,7 @@ from typing import Literal
 
 import networkx as nx
 
-from nau_py.graph.layers import Layers, Link, list_links, make_layers
+from nau_py.graph.layers import DrawnEdge, Layers, list_links, make_layers
 from nau_py.graph.network import Network
 
 Direction = Literal["down", "right"]
@@ -35,12 +35,12 @@ class Box:
 class Arrow:
     """An arrow: its link, and the path from source to target as SVG path data."""
 
-    link: Link
+    link: DrawnEdge
     path: str
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class GraphLayout:
     """Places of all nodes and arrows in a picture of ``width`` x ``height`` pixels."""
 
     width: float
@@ -55,7 +55,7 @@ def lay_out(
     direction: Direction = "down",
     gap: float = 18,
     layer_gap: float = 40,
-) -> Layout:
+) -> GraphLayout:
     """Place the nodes and arrows of a plan's graph in layers.
 
     ``sizes``: of each node's box. ``direction``: that of the arrows. ``gap``: the least distance
@@ -98,7 +98,7 @@ def lay_out(
     width = max([width, *(x for n, x in across.items() if n not in extent)])
     height = max(top - layer_gap, 0.0)
     size = (height, width) if turned else (width, height)
-    return Layout(round(size[0], 1), round(size[1], 1), boxes, arrows)
+    return GraphLayout(round(size[0], 1), round(size[1], 1), boxes, arrows)
 
 
 def _place_across(layers: Layers, widths: Mapping[str, float], gap: float) -> dict[str, float]:

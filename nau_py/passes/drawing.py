@@ -19,8 +19,8 @@ from nau_py.passes.frame import FrameContext, View
 from nau_py.scene.viewport import Rect
 
 if TYPE_CHECKING:
-    from nau_py.raster.programs import Program
-    from nau_py.raster.semantics import DrawContext
+    from nau_py.raster.draw_context import DrawContext
+    from nau_py.raster.programs import ShaderProgram
     from nau_py.scene.camera import CameraState
     from nau_py.scene.material import RenderMaterial
     from nau_py.scene.mesh import F64, Mesh, SceneObject
@@ -117,7 +117,7 @@ def draw_context(
 
     ``matrices``: world to eye and eye to clip space, (4, 4) for column vectors; None: identities.
     """
-    from nau_py.raster.semantics import DrawContext
+    from nau_py.raster.draw_context import DrawContext
 
     instances = int(pass_value(frame.project, pass_, "INSTANCE_COUNT"))
     if not instances and pass_.scenes is not None:
@@ -163,12 +163,12 @@ def draw_objects(
 
     ``depth_clamp``: fragments nearer or farther than the depth range are clamped, not clipped.
     """
-    from nau_py.raster.draw import draw, draw_list
+    from nau_py.raster.draw import draw_items, list_draws
     from nau_py.raster.gl import GL
 
     if depth_clamp:
         GL.glEnable(GL.GL_DEPTH_CLAMP)
-    draw(draw_list(objects, material_of), context)
+    draw_items(list_draws(objects, material_of), context)
     if depth_clamp:
         GL.glDisable(GL.GL_DEPTH_CLAMP)
 
@@ -192,13 +192,16 @@ def draw_scenes(
 
 def draw_mesh(mesh: Mesh, material: RenderMaterial, context: DrawContext) -> None:
     """Draw the first group of a mesh, untransformed, into the bound target."""
-    from nau_py.raster.draw import DrawItem, draw
+    from nau_py.raster.draw import DrawItem, draw_items
 
-    draw([DrawItem(mesh, 0, material, np.eye(4))], context)
+    draw_items([DrawItem(mesh, 0, material, np.eye(4))], context)
 
 
 def dispatch_compute(
-    program: Program, material: RenderMaterial, groups: tuple[int, int, int], context: DrawContext
+    program: ShaderProgram,
+    material: RenderMaterial,
+    groups: tuple[int, int, int],
+    context: DrawContext,
 ) -> None:
     """Run a compute program with the resources of its material; nothing where a count is 0."""
     from nau_py.raster.draw import bind_material, set_uniforms, unbind_material

@@ -1,4 +1,4 @@
-"""Uniform blocks: one buffer per block name, shared by every program (docs/format.md, 6.8)."""
+"""Uniform blocks: one buffer per block name, shared by all programs (docs/format.md, 6.8)."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Block:
 
 
 class UniformBlocks:
-    """Blocks by name. Binding points are given in order of first use."""
+    """Blocks by name. Binding points are numbered in the order of first use."""
 
     def __init__(self, ctx: Any) -> None:
         self._ctx = ctx
@@ -39,7 +39,7 @@ class UniformBlocks:
         self._members: dict[int, dict[tuple[str, str], BlockMember]] = {}
 
     def attach(self, program: int) -> None:
-        """Give the blocks of a new program their storage, and learn their layout."""
+        """Allocate storage for the blocks of a new program, and query their layout."""
         blocks = gl.active_blocks(program)
         for index, (name, size) in enumerate(blocks):
             block = self._blocks.get(name)
@@ -58,12 +58,12 @@ class UniformBlocks:
         }
 
     def set(self, program: int, block: str, uniform: str, value: np.ndarray[Any, Any]) -> None:
-        """Write a flat value into a member; a name that is not active is ignored, as in Nau."""
+        """Write a flat value into a member. Ignore a name that is not active, as Nau does."""
         member = self._members.get(program, {}).get((block, uniform.split(".")[-1]))
         if member is None:
             return
         storage = self._blocks[block]
-        count = gl.components_of(member.gl_type)
+        count = gl.count_components(member.gl_type)
         flat = np.zeros(count, gl.uniform_dtype(member.gl_type))
         given = value.reshape(-1)[:count]
         flat[: len(given)] = given
@@ -76,7 +76,7 @@ class UniformBlocks:
                 storage.dirty = True
 
     def bind(self) -> None:
-        """Upload what has changed and bind every block."""
+        """Upload the changed blocks and bind all of them."""
         for block in self._blocks.values():
             if block.dirty:
                 block.buffer.write(bytes(block.data))

@@ -24,8 +24,8 @@ _BASE_TYPES: dict[str, tuple[type[np.generic], int]] = {
 _PREFIXES = {"IVEC": "INT", "UIVEC": "UINT", "BVEC": "BOOL", "VEC": "FLOAT", "DVEC": "DOUBLE"}
 
 
-def basic_types(name: str) -> list[type[np.generic]]:
-    """The basic types of ``name``, vectors and matrices expanded; empty for what is none."""
+def list_scalar_types(name: str) -> list[type[np.generic]]:
+    """List the scalar types of ``name``: vectors and matrices expanded, empty if unknown."""
     if name in _BASE_TYPES:
         return [_BASE_TYPES[name][0]]
     for prefix, base in _PREFIXES.items():
@@ -38,33 +38,33 @@ def basic_types(name: str) -> list[type[np.generic]]:
     return []
 
 
-def record_types(buffer: Buffer) -> list[type[np.generic]]:
-    """The basic types of one record, in order."""
-    return [basic for entry in buffer.structure for basic in basic_types(entry.value or "")]
+def list_record_types(buffer: Buffer) -> list[type[np.generic]]:
+    """List the scalar types of one record, in order."""
+    return [basic for entry in buffer.structure for basic in list_scalar_types(entry.value or "")]
 
 
-def record_size(buffer: Buffer) -> int:
-    """Bytes of one record."""
-    return sum(np.dtype(t).itemsize for t in record_types(buffer))
+def compute_record_size(buffer: Buffer) -> int:
+    """Compute the size of one record in bytes."""
+    return sum(np.dtype(t).itemsize for t in list_record_types(buffer))
 
 
-def initial_content(project: Project, buffer: Buffer) -> bytes:
-    """The bytes that a buffer begins with: its file's, then zeros up to SIZE or DIM.
+def read_initial_content(project: Project, buffer: Buffer) -> bytes:
+    """Read the initial bytes of a buffer: its file, then zeros up to SIZE or DIM.
 
-    Text files hold numbers in the order of the record's basic types. Raises :class:`ValueError`
-    for text that is no number, :class:`OSError` for a file that cannot be read.
+    Text files hold numbers in the order of the record's scalar types. Raises :class:`ValueError`
+    for text that is not a number, and :class:`OSError` for a file that cannot be read.
     """
     size = int(project.value(buffer, "BUFFER", "SIZE")[0])
     if "DIM" in buffer.settings:
         x, y, z = (int(v) for v in project.value(buffer, "BUFFER", "DIM"))
-        size = x * y * z * record_size(buffer)
+        size = x * y * z * compute_record_size(buffer)
     data = b""
     if buffer.file is not None and buffer.file.name:
         folder = Path(buffer.location.file).parent
         path = resolve(folder, buffer.file.name).best
         data = path.read_bytes()
         if path.suffix.lower() != ".nbb":
-            types = record_types(buffer) or [np.float32]
+            types = list_record_types(buffer) or [np.float32]
             words = data.split()
             data = b"".join(
                 np.array(word.decode(), types[i % len(types)]).tobytes()

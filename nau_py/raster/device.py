@@ -39,9 +39,9 @@ class Device:
         self.renderer = str(info["GL_RENDERER"])
         self.version = str(info["GL_VERSION"])
         self.max_size = int(info["GL_MAX_TEXTURE_SIZE"])
-        """The largest width or height of a texture, texels."""
+        """Upper bound for the width and height of a texture, in texels."""
         self.max_samples = int(info["GL_MAX_SAMPLES"])
-        """The most samples a texel of a multisample texture."""
+        """Upper bound for the samples per texel of a multisample texture."""
 
     @property
     def is_software(self) -> bool:
@@ -49,6 +49,6 @@ class Device:
 
 
 @lru_cache(maxsize=1)
-def device() -> Device:
-    """The process's device, made at first use. Raises :class:`~nau_py.DeviceError`."""
+def get_device() -> Device:
+    """Return the process's device, opened at first use. Raises :class:`~nau_py.DeviceError`."""
     return Device()

@@ -1,4 +1,4 @@
-"""Drawing: materials prepared, geometry sent, in Nau's order (docs/format.md, 11.6)."""
+"""Drawing: bind materials and send geometry, in Nau's order (docs/format.md, 11.6)."""
 
 from __future__ import annotations
 
@@ -9,10 +9,12 @@ from typing import Any
 
 from nau_py.diagnostics.diagnostic import error
 from nau_py.raster import gl
+from nau_py.raster.draw_context import DrawContext
+from nau_py.raster.formats import pixel_format
 from nau_py.raster.gl import GL
-from nau_py.raster.programs import Program
+from nau_py.raster.programs import ShaderProgram
 from nau_py.raster.resources import Resources
-from nau_py.raster.semantics import DrawContext, resolve
+from nau_py.raster.semantics import resolve_source
 from nau_py.raster.state import apply_state
 from nau_py.scene.material import RenderMaterial
 from nau_py.scene.mesh import F64, Mesh, SceneObject
@@ -49,10 +51,10 @@ class DrawItem:
     matrix: F64
 
 
-def draw_list(
+def list_draws(
     objects: list[SceneObject], material_of: Callable[[str], RenderMaterial | None]
 ) -> list[DrawItem]:
-    """What to draw, by ORDER, then material, then object: a stable order."""
+    """List the groups to draw, sorted by ORDER, then material, then object."""
     items: list[DrawItem] = []
     seen: dict[int, int] = {}
     for item in objects:
@@ -84,8 +86,6 @@ def bind_material(resources: Resources, material: RenderMaterial) -> None:
 
 
 def _bind_image(unit: int, texture: Any, settings: dict[str, Any]) -> None:
-    from nau_py.raster.formats import pixel_format
-
     level = int(settings.get("LEVEL", (0,))[0])
     access = _ACCESS[str(settings.get("ACCESS", ("WRITE_ONLY",))[0])]
     name = settings.get("INTERNAL_FORMAT", (texture.format.name,))[0]
@@ -96,19 +96,19 @@ def _bind_image(unit: int, texture: Any, settings: dict[str, Any]) -> None:
 
 
 def unbind_material(material: RenderMaterial) -> None:
-    """Leave no texture of ``material`` behind for the next one."""
+    """Unbind the textures of ``material``, which the next one must not see."""
     for unit in material.textures:
         GL.glBindTextureUnit(unit, 0)
         GL.glBindSampler(unit, 0)
 
 
-def set_uniforms(program: Program, context: DrawContext) -> None:
-    """Upload the values of the current material's sources."""
+def set_uniforms(program: ShaderProgram, context: DrawContext) -> None:
+    """Upload the uniforms of the current material."""
     material = context.material
     if material is None:
         return
     for source in material.uniforms:
-        value = resolve(context, source.type, source.context, source.component, source.id)
+        value = resolve_source(context, source.type, source.context, source.component, source.id)
         if value is None:
             continue
         if source.block:
@@ -119,8 +119,8 @@ def set_uniforms(program: Program, context: DrawContext) -> None:
 
 
 @dataclass(slots=True)
-class _Command:
-    """What a draw command of OpenGL holds; its count never reaches past what there is."""
+class _DrawCommand:
+    """A draw command of OpenGL. ``count`` never exceeds the existing vertices or indices."""
 
     count: int
     instances: int
@@ -129,15 +129,15 @@ class _Command:
     base_instance: int = 0
 
 
-def _command(context: DrawContext, count: int, indexed: bool) -> _Command:
-    """How to draw ``count`` vertices: as the pass says, or its buffer of draw commands.
+def _make_command(context: DrawContext, count: int, indexed: bool) -> _DrawCommand:
+    """Make the command to draw ``count`` vertices, or read it from the buffer of draw commands.
 
     As in Nau the count is written into the buffer before each draw (docs/format.md, 11.6). The
     other values are read back and not left to the GPU: all groups of a mesh share one buffer of
     indices here, so ``first`` has to be moved.
     """
     if context.indirect is None:
-        return _Command(count, max(context.instances, 1))
+        return _DrawCommand(count, max(context.instances, 1))
     buffer = context.resources.buffer(context.indirect)
     size = 20 if indexed else 16
     if buffer is None or buffer.size < size:
@@ -151,14 +151,18 @@ def _command(context: DrawContext, count: int, indexed: bool) -> _Command:
                 f"draw command takes {size}",
             )
         )
-        return _Command(0, 0)
+        return _DrawCommand(0, 0)
     buffer.write(count.to_bytes(4, "little"))
     words = struct.unpack("<4xIIiI" if indexed else "<4xIII", buffer.read(size))
     left = max(count - words[1], 0)
-    return _Command(left, *words) if indexed else _Command(left, words[0], words[1], 0, words[2])
+    return (
+        _DrawCommand(left, *words)
+        if indexed
+        else _DrawCommand(left, words[0], words[1], 0, words[2])
+    )
 
 
-def _draw_mesh(item: DrawItem, program: Program, context: DrawContext) -> None:
+def _draw_mesh(item: DrawItem, program: ShaderProgram, context: DrawContext) -> None:
     resources = context.resources
     array = resources.geometry.vertex_array(item.mesh, program)
     gpu = resources.geometry.upload(item.mesh)
@@ -168,7 +172,7 @@ def _draw_mesh(item: DrawItem, program: Program, context: DrawContext) -> None:
         mode = GL.GL_PATCHES
         GL.glPatchParameteri(GL.GL_PATCH_VERTICES, points)
     first = gpu.first[item.group]
-    c = _command(context, gpu.count[item.group], indexed=True)
+    c = _make_command(context, gpu.count[item.group], indexed=True)
     gl.draw_elements(
         program.mgl.glo,
         array,
@@ -181,23 +185,23 @@ def _draw_mesh(item: DrawItem, program: Program, context: DrawContext) -> None:
     )
 
 
-def _draw_buffers(mesh: Mesh, program: Program, context: DrawContext) -> None:
-    """Geometry of GPU buffers: as many vertices as ``position`` holds, or as there are indices."""
+def _draw_buffers(mesh: Mesh, program: ShaderProgram, context: DrawContext) -> None:
+    """Draw geometry of GPU buffers: all vertices of ``position``, or all indices."""
     resources = context.resources
     found = {name: resources.buffer(place) for name, place in mesh.buffers.items()}
     buffers = {name: buffer for name, buffer in found.items() if buffer is not None}
     array = resources.geometry.buffer_array(mesh, program, {n: b.glo for n, b in buffers.items()})
     mode = _MODES[mesh.primitive]
     if "index" in buffers:
-        c = _command(context, buffers["index"].size // 4, indexed=True)
+        c = _make_command(context, buffers["index"].size // 4, indexed=True)
         base = (c.base_vertex, c.base_instance)
         gl.draw_elements(program.mgl.glo, array, mode, c.count, c.first, c.instances, *base)
     elif "position" in buffers:
-        c = _command(context, buffers["position"].size // 16, indexed=False)
+        c = _make_command(context, buffers["position"].size // 16, indexed=False)
         gl.draw_arrays(program.mgl.glo, array, mode, c.count, c.instances, c.first, c.base_instance)
 
 
-def draw(items: list[DrawItem], context: DrawContext) -> None:
+def draw_items(items: list[DrawItem], context: DrawContext) -> None:
     """Draw ``items`` into the bound target."""
     resources = context.resources
     previous: RenderMaterial | None = None

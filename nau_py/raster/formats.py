@@ -1,4 +1,4 @@
-"""Nau's internal formats as OpenGL knows them (docs/format.md, 6.2)."""
+"""Nau's internal formats in OpenGL (docs/format.md, 6.2)."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ class PixelFormat:
 
 
 def pixel_format(name: str) -> PixelFormat:
-    """The format called ``name``; ``RGBA`` is 8-bit normalised, as in Nau."""
+    """Return the format called ``name``; ``RGBA`` is 8-bit normalised, as in Nau."""
     if name in _DEPTH_KINDS:
         stencil = "STENCIL" in name
         return PixelFormat(

@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 
 from nau_py.raster import gl
-from nau_py.raster.programs import Program
+from nau_py.raster.programs import ShaderProgram
 from nau_py.scene.adjacency import add_neighbours
 from nau_py.scene.mesh import Mesh
 
 
 @dataclass(slots=True)
 class GpuMesh:
-    """Vertex buffers by attribute, one index buffer, and where each group begins in it."""
+    """Vertex buffers by attribute, and one index buffer with the first index of each group."""
 
     buffers: dict[str, Any]
     indices: Any
@@ -24,8 +24,8 @@ class GpuMesh:
     version: int = 0
 
 
-class Geometry:
-    """Uploads meshes once and keeps a vertex array per mesh and program."""
+class GeometryCache:
+    """Keeps the GPU copy of each mesh, and a vertex array for each mesh and program."""
 
     def __init__(self, ctx: Any) -> None:
         self._ctx = ctx
@@ -33,7 +33,7 @@ class Geometry:
         self._arrays: dict[tuple[int, int], int] = {}
 
     def upload(self, mesh: Mesh) -> GpuMesh:
-        """The GPU copy of ``mesh``; of a loaded mesh only positions change, with its version."""
+        """Return the GPU copy of ``mesh``. Upload positions again if their version has changed."""
         found = self._meshes.get(id(mesh))
         if found is not None:
             if found[1].version != mesh.version:
@@ -56,13 +56,13 @@ class Geometry:
         return gpu
 
     def release(self) -> None:
-        """Delete the vertex arrays; the buffers are moderngl's."""
+        """Delete the vertex arrays. moderngl deletes the buffers."""
         gl.delete_vertex_arrays(list(self._arrays.values()))
         self._arrays.clear()
         self._meshes.clear()
 
-    def buffer_array(self, mesh: Mesh, program: Program, buffers: dict[str, int]) -> int:
-        """``vertex_array`` for a mesh whose attributes live in the named GL ``buffers``."""
+    def buffer_array(self, mesh: Mesh, program: ShaderProgram, buffers: dict[str, int]) -> int:
+        """Return the vertex array for a mesh whose attributes are the named GL ``buffers``."""
         key = (id(mesh), program.mgl.glo)
         if key not in self._arrays:
             inputs = [(at, buffers[name]) for name, at in program.inputs if name in buffers]
@@ -70,8 +70,8 @@ class Geometry:
             self._arrays[key] = gl.create_vertex_array(inputs, buffers.get("index", 0))
         return self._arrays[key]
 
-    def vertex_array(self, mesh: Mesh, program: Program) -> int:
-        """The vertex array that feeds ``mesh`` to ``program``, inputs matched by name."""
+    def vertex_array(self, mesh: Mesh, program: ShaderProgram) -> int:
+        """Return the vertex array of ``mesh`` for ``program``, with inputs matched by name."""
         key = (id(mesh), program.mgl.glo)
         if key not in self._arrays:
             gpu = self.upload(mesh)

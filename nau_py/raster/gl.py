@@ -1,6 +1,6 @@
-"""Raw OpenGL for what moderngl lacks or drops: the only file that imports PyOpenGL.
+"""Raw OpenGL calls that moderngl lacks: the only file that imports PyOpenGL.
 
-It works on the context that :mod:`nau_py.raster.device` made current.
+The calls use the context that :mod:`nau_py.raster.device` made current.
 """
 
 from __future__ import annotations
@@ -65,8 +65,8 @@ _MATRIX_TYPES = {
 }
 
 
-def components_of(gl_type: int) -> int:
-    """Scalars of one element of a uniform of ``gl_type``; 1 for samplers and images."""
+def count_components(gl_type: int) -> int:
+    """Count the scalars of one element of a uniform of ``gl_type``; 1 for samplers and images."""
     if gl_type in _MATRIX_TYPES:
         return _MATRIX_TYPES[gl_type][0]
     for table in (_FLOAT_TYPES, _INT_TYPES, _UINT_TYPES):
@@ -76,7 +76,7 @@ def components_of(gl_type: int) -> int:
 
 
 def uniform_dtype(gl_type: int) -> type[np.generic]:
-    """The dtype to upload for a uniform of ``gl_type``; int32 for samplers and images."""
+    """Return the dtype to upload for a uniform of ``gl_type``; int32 for samplers and images."""
     if gl_type in _FLOAT_TYPES or gl_type in _MATRIX_TYPES:
         return np.float32
     return np.uint32 if gl_type in _UINT_TYPES else np.int32
@@ -87,7 +87,7 @@ def set_uniform(program: int, location: int, gl_type: int, count: int, value: Ar
     if gl_type in _MATRIX_TYPES:
         getattr(GL, _MATRIX_TYPES[gl_type][1])(program, location, count, GL.GL_FALSE, value)
         return
-    width = components_of(gl_type)
+    width = count_components(gl_type)
     table = {np.float32: _UNIFORM_F, np.int32: _UNIFORM_I, np.uint32: _UNIFORM_U}
     getattr(GL, table[uniform_dtype(gl_type)][width])(program, location, count, value)  # type: ignore[index]
 
@@ -111,7 +111,7 @@ def create_sampler() -> int:
 
 
 def swizzle_grey(texture: int) -> None:
-    """Let a depth texture be read as grey, as compatibility contexts do, which Nau uses."""
+    """Make shaders read a depth texture as grey, as in the compatibility contexts of Nau."""
     grey = np.array([GL.GL_RED, GL.GL_RED, GL.GL_RED, GL.GL_ONE], np.int32)
     GL.glTextureParameteriv(texture, GL.GL_TEXTURE_SWIZZLE_RGBA, grey)
 
@@ -190,13 +190,15 @@ def upload_face(
 
 
 def clear_texture(name: int, levels: list[int], layout: int, kind: int) -> None:
-    """Fill levels with zero."""
+    """Fill the levels with zero."""
     for level in levels:
         GL.glClearTexImage(name, level, layout, kind, None)
 
 
-def _active(program: int, interface: int, properties: list[int]) -> list[tuple[str, list[int]]]:
-    """Names and properties of a program interface's active resources."""
+def _query_active(
+    program: int, interface: int, properties: list[int]
+) -> list[tuple[str, list[int]]]:
+    """Query names and properties of the active resources of a program interface."""
     count = np.zeros(1, np.int32)
     GL.glGetProgramInterfaceiv(program, interface, GL.GL_ACTIVE_RESOURCES, count)
     wanted = np.array(properties, np.uint32)
@@ -222,36 +224,36 @@ def _active(program: int, interface: int, properties: list[int]) -> list[tuple[s
 
 
 def active_uniforms(program: int) -> list[tuple[str, int, int, int]]:
-    """(name, location, type, array length) of the uniforms outside blocks.
+    """List (name, location, type, array length) of the uniforms outside blocks.
 
-    moderngl hides a uniform that shares its name with a vertex attribute; this does not.
+    moderngl hides a uniform that shares its name with a vertex attribute; this function does not.
     """
     properties = [GL.GL_LOCATION, GL.GL_TYPE, GL.GL_ARRAY_SIZE]
-    listed = _active(program, GL.GL_UNIFORM, properties)
+    listed = _query_active(program, GL.GL_UNIFORM, properties)
     return [(n.removesuffix("[0]"), v[0], v[1], max(v[2], 1)) for n, v in listed if v[0] >= 0]
 
 
 def active_blocks(program: int) -> list[tuple[str, int]]:
-    """(name, bytes) of the uniform blocks, by block index."""
-    listed = _active(program, GL.GL_UNIFORM_BLOCK, [GL.GL_BUFFER_DATA_SIZE])
+    """List (name, bytes) of the uniform blocks, by block index."""
+    listed = _query_active(program, GL.GL_UNIFORM_BLOCK, [GL.GL_BUFFER_DATA_SIZE])
     return [(name, values[0]) for name, values in listed]
 
 
 def active_block_members(program: int) -> list[tuple[str, int, int, int, int]]:
-    """(name, type, byte offset, block index, matrix stride) of the uniforms inside blocks."""
+    """List (name, type, byte offset, block index, matrix stride) of the uniforms in blocks."""
     properties = [GL.GL_TYPE, GL.GL_OFFSET, GL.GL_BLOCK_INDEX, GL.GL_MATRIX_STRIDE]
-    listed = _active(program, GL.GL_UNIFORM, properties)
+    listed = _query_active(program, GL.GL_UNIFORM, properties)
     return [(n, v[0], v[1], v[2], max(v[3], 0)) for n, v in listed if v[2] >= 0]
 
 
 def active_inputs(program: int) -> list[tuple[str, int]]:
-    """(name, location) of the vertex attributes, without the built-in ones."""
-    listed = _active(program, GL.GL_PROGRAM_INPUT, [GL.GL_LOCATION])
+    """List (name, location) of the vertex attributes, without the built-in ones."""
+    listed = _query_active(program, GL.GL_PROGRAM_INPUT, [GL.GL_LOCATION])
     return [(name, v[0]) for name, v in listed if v[0] >= 0]
 
 
 def create_vertex_array(inputs: list[tuple[int, int]], indices: int) -> int:
-    """A vertex array of (location, buffer) pairs of float32 vec4, and an index buffer."""
+    """Create a vertex array of (location, buffer) pairs of float32 vec4, and an index buffer."""
     made = np.zeros(1, np.uint32)
     GL.glCreateVertexArrays(1, made)
     array = int(made[0])
@@ -303,7 +305,7 @@ def draw_arrays(
 
 
 def barrier() -> None:
-    """Make all shader writes visible to everything that follows."""
+    """Make the writes of shaders visible to all later commands."""
     GL.glMemoryBarrier(GL.GL_ALL_BARRIER_BITS)
 
 

@@ -1,8 +1,8 @@
 """Shading of ray hits by the GLSL program that rasterises their material.
 
-Hits are drawn as points, one a pixel of a target of their own, through the material's vertex and
-fragment stages. What depends on the view (camera position, view and normal matrices) is read per
-hit: the eye of each hit is the origin of its ray, and looks along it.
+Hits are drawn as points into a target of their own, one per pixel, through the material's vertex
+and fragment stages. Values that depend on the view (camera position, view and normal matrices) are
+read per hit: the eye of a hit is the origin of its ray and looks along it.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ from nau_py.diagnostics.errors import ShaderError
 from nau_py.model.shader import Shader
 from nau_py.raster import gl
 from nau_py.raster.draw import bind_material, set_uniforms, unbind_material
+from nau_py.raster.draw_context import DrawContext
 from nau_py.raster.gl import GL
-from nau_py.raster.programs import Program, UniformSlot, read_stage
-from nau_py.raster.semantics import DrawContext
+from nau_py.raster.programs import ShaderProgram, UniformSlot, read_stage
 from nau_py.raster.state import reset_state
 from nau_py.raster.targets import Attachment, Target
 from nau_py.scene.material import RenderMaterial, UniformSource
@@ -30,7 +30,7 @@ from nau_py.scene.mesh import F32, F64
 from nau_py.scene.viewport import Rect
 
 SIDE = 256
-"""The hit target is SIDE x SIDE: so many hits are shaded by one draw call."""
+"""Width and height of the hit target. One draw call shades SIDE² hits."""
 BINDING = 7
 """Binding point of the buffer with the views."""
 VIEW_DEPENDENT = {
@@ -69,7 +69,7 @@ void main() {{
 
 @dataclass(frozen=True, slots=True)
 class ViewUniform:
-    """A uniform that is read per hit: where its vec4 rows begin in a hit's part of the buffer."""
+    """A uniform that is read per hit. ``first``: its first vec4 row in the part of a hit."""
 
     source: UniformSource
     type: str
@@ -78,9 +78,9 @@ class ViewUniform:
 
 @dataclass(slots=True)
 class HitProgram:
-    """A material's program as hits run it."""
+    """A material's program, compiled for hits."""
 
-    program: Program
+    program: ShaderProgram
     views: list[ViewUniform]
     rows: int
 
@@ -91,8 +91,8 @@ def _is_view(source: UniformSource) -> bool:
     return source.component in VIEW_DEPENDENT.get(source.type, ())
 
 
-def without_declarations(text: str, names: set[str]) -> tuple[str, dict[str, str]]:
-    """``text`` without the declarations of uniforms ``names``, and the type of each."""
+def remove_declarations(text: str, names: set[str]) -> tuple[str, dict[str, str]]:
+    """Remove the declarations of the uniforms ``names``; return the text and their types."""
     types: dict[str, str] = {}
 
     def keep(match: re.Match[str]) -> str:
@@ -105,8 +105,8 @@ def without_declarations(text: str, names: set[str]) -> tuple[str, dict[str, str
     return _DECLARATION.sub(keep, text), types
 
 
-def _headed(text: str, lines: list[str]) -> str:
-    """``text`` with ``lines`` behind its version, which is raised to 430; lines keep numbers."""
+def _insert_head(text: str, lines: list[str]) -> str:
+    """Insert ``lines`` behind the version, which is raised to 430; keep the line numbers."""
     match = _VERSION.match(text)
     version = max(int(match[1]), 430) if match else 430
     body = text[match.end() :] if match else text
@@ -115,7 +115,7 @@ def _headed(text: str, lines: list[str]) -> str:
     return f"#version {version} core\n{head}\n#line {start}\n{body}"
 
 
-def _macro(view: ViewUniform) -> str:
+def _define_macro(view: ViewUniform) -> str:
     rows = [f"nau_views[nau_slot * nau_rows + {view.first + k}]" for k in range(_ROWS[view.type])]
     if view.type == "mat4":
         value = f"mat4({', '.join(rows)})"
@@ -142,7 +142,7 @@ def compile_for_hits(
     sources = {s.uniform: s for s in material.uniforms if _is_view(s)}
     texts, types = [], {}
     for source in (vertex, fragment):
-        text, found = without_declarations(source.text, set(sources))
+        text, found = remove_declarations(source.text, set(sources))
         texts.append(text)
         types.update(found)
     views: list[ViewUniform] = []
@@ -153,15 +153,15 @@ def compile_for_hits(
     shared = [
         f"const int nau_rows = {max(rows, 1)};",
         f"layout(std430, binding = {BINDING}) readonly buffer nau_Views {{ vec4 nau_views[]; }};",
-        *(_macro(view) for view in views),
+        *(_define_macro(view) for view in views),
     ]
     head = ["#define main nau_material_main", "flat out int nau_slot_of_fragment;"]
     tail = ["flat in int nau_slot_of_fragment;", "#define nau_slot nau_slot_of_fragment"]
     try:
         made = ctx.program(
-            vertex_shader=_headed(texts[0], [*head, "#define nau_slot gl_VertexID", *shared])
+            vertex_shader=_insert_head(texts[0], [*head, "#define nau_slot gl_VertexID", *shared])
             + _POINT.format(side=SIDE),
-            fragment_shader=_headed(texts[1], [*tail, *shared]),
+            fragment_shader=_insert_head(texts[1], [*tail, *shared]),
         )
     except moderngl.Error as problem:
         text = " ".join(line.strip() for line in str(problem).splitlines() if line.strip())
@@ -171,18 +171,18 @@ def compile_for_hits(
         name: UniformSlot(location, gl_type, length)
         for name, location, gl_type, length in gl.active_uniforms(made.glo)
     }
-    program = Program(
+    program = ShaderProgram(
         library, shader.name or "", made, uniforms, gl.active_inputs(made.glo), True, False
     )
     return HitProgram(program, views, max(rows, 1))
 
 
-def view_rows(
+def compute_view_rows(
     program: HitProgram, origin: F32, direction: F32, up: F64, projection: F64, model: F64
 ) -> F32:
-    """The buffer of ``program`` for rays (n, 3), float32 (n, rows, 4), column-major matrices.
+    """Compute the view values of ``program`` for rays (n, 3): float32 (n, rows, 4), column-major.
 
-    The eye of a hit stands at the ray's origin and looks along it; ``up`` is the camera's.
+    The eye of a hit is the ray's origin and looks along the ray; ``up`` is the camera's.
     """
     n = len(origin)
     d = direction.astype(np.float64)
@@ -225,13 +225,13 @@ def view_rows(
 
 
 class HitShading:
-    """Shades batches of hits; keeps programs, and the target that they draw into."""
+    """Shades batches of hits. Keeps the programs, and the target that they draw into."""
 
     def __init__(self) -> None:
         self._programs: dict[tuple[str, str, tuple[UniformSource, ...]], HitProgram] = {}
         self._target: Target | None = None
 
-    def _program(self, context: DrawContext, material: RenderMaterial) -> HitProgram:
+    def _find_program(self, context: DrawContext, material: RenderMaterial) -> HitProgram:
         key = (*material.program, material.uniforms)
         if key not in self._programs:
             found = context.world.project.shader(*material.program)
@@ -252,21 +252,21 @@ class HitShading:
         origin: F32,
         direction: F32,
     ) -> F32:
-        """Colours of hits, RGBA float32 (n, 4).
+        """Compute the colours of hits, RGBA float32 (n, 4).
 
         ``attributes`` float32 (n, 4) by name, in the space of the object whose matrix is ``model``;
         rays float32 (n, 3), world space. Raises :class:`ShaderError`.
         """
-        hit_program = self._program(context, material)
+        hit_program = self._find_program(context, material)
         parts = []
         for start in range(0, len(origin), SIDE * SIDE):
             part = slice(start, start + SIDE * SIDE)
             some = {name: values[part] for name, values in attributes.items()}
             own = replace(context, material=material, model=model)
-            parts.append(self._draw(own, hit_program, some, origin[part], direction[part]))
+            parts.append(self._draw_hits(own, hit_program, some, origin[part], direction[part]))
         return np.concatenate(parts)
 
-    def _draw(
+    def _draw_hits(
         self,
         context: DrawContext,
         hit_program: HitProgram,
@@ -292,7 +292,7 @@ class HitShading:
         GL.glColorMask(True, True, True, True)
         set_uniforms(program, context)
         up, projection = context.camera.true_up, context.projection
-        rows = view_rows(hit_program, origin, direction, up, projection, context.model)
+        rows = compute_view_rows(hit_program, origin, direction, up, projection, context.model)
         views = ctx.buffer(rows.tobytes())
         views.bind_to_storage_buffer(BINDING)
         zero = np.zeros((count, 4), np.float32)

@@ -1,4 +1,4 @@
-"""GLSL programs: sources, compilation, and errors mapped to the files that people wrote."""
+"""GLSL programs: sources, compilation, and errors located in the source files."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from nau_py.diagnostics.location import Location
 from nau_py.model.shader import STAGES, Shader
 from nau_py.process.paths import resolve
 from nau_py.raster import gl
-from nau_py.raster.tolerant_glsl import adapt, renamed
+from nau_py.raster.tolerant_glsl import adapt_stages, rename_word
 
 _STAGE_NAMES = {
     "vs": "vertex_shader",
@@ -37,20 +37,20 @@ _LOG_LINE = re.compile(
 
 @dataclass(slots=True)
 class StageSource:
-    """The text of one stage and the files it came from; ``skipped`` leading lines were dropped."""
+    """The text of one stage and its files; ``skipped`` blank lines were removed at the top."""
 
     text: str
     files: list[Path]
     skipped: int
 
     def place(self, line: int, column: int = 1) -> Location:
-        """Where line ``line`` of the text, as the driver counts, stands in its file."""
+        """Locate line ``line`` of the text, as the driver counts, in its file."""
         index, row = divmod(line, _STRIDE)
         index = min(index, len(self.files) - 1)
         return Location(str(self.files[index]), row + (0 if index else self.skipped), column)
 
     def tests(self, macro: str) -> bool:
-        """Whether a condition of the preprocessor asks for ``macro``."""
+        """Return True if a condition of the preprocessor tests ``macro``."""
         return re.search(rf"^\s*#\s*(?:if|elif)\w*\b.*\b{macro}\b", self.text, re.M) is not None
 
 
@@ -65,7 +65,7 @@ class UniformSlot:
 
 
 @dataclass(slots=True)
-class Program:
+class ShaderProgram:
     """A linked program with its active uniforms."""
 
     library: str
@@ -77,14 +77,14 @@ class Program:
     is_compute: bool
     is_tessellated: bool = False
     notes: list[str] = field(default_factory=list)
-    """What had to be changed for the driver to accept it."""
+    """Changes without which the driver rejects the program."""
 
     def set(self, name: str, value: np.ndarray[Any, Any]) -> None:
-        """Upload a flat value, cut or zero-filled to the size that the shader declares."""
+        """Upload a flat value, cut or filled with zeros to the size that the shader declares."""
         slot = self.uniforms.get(name.removesuffix("[0]"))
         if slot is None:
             return
-        wanted = gl.components_of(slot.gl_type) * slot.count
+        wanted = gl.count_components(slot.gl_type) * slot.count
         flat = np.zeros(wanted, gl.uniform_dtype(slot.gl_type))
         given = value.reshape(-1)[:wanted]
         flat[: len(given)] = given
@@ -94,8 +94,8 @@ class Program:
             slot.last = raw
 
 
-def stage_files(shader: Shader) -> list[Path]:
-    """The resolved paths of all source files of a shader."""
+def list_stage_files(shader: Shader) -> list[Path]:
+    """List the resolved paths of all source files of a shader."""
     folder = Path(shader.location.file).parent
     names = [name for stage in STAGES for name in shader.files(stage)]
     return [resolve(folder, name).best.resolve() for name in names]
@@ -122,10 +122,10 @@ def read_stage(shader: Shader, stage: str) -> StageSource | None:
     return StageSource(stripped, files, whole[: len(whole) - len(stripped)].count("\n"))
 
 
-def _located(
+def _locate_errors(
     log: str, sources: dict[str, StageSource], shader: Shader, label: str
 ) -> list[Diagnostic]:
-    """Diagnostics from a driver's log: each error at its own file, line and column."""
+    """Make diagnostics from a driver's log: each error with its own file, line and column."""
     found: list[Diagnostic] = []
     stage = next(iter(sources))
     headings = {name: key for key, name in _STAGE_NAMES.items()} | {"compute_shader": "cs"}
@@ -144,8 +144,8 @@ def _located(
     return found
 
 
-def compile_program(ctx: Any, library: str, shader: Shader) -> Program:
-    """Compile and link. Raises :class:`~nau_py.ShaderError`."""
+def compile_program(ctx: Any, library: str, shader: Shader) -> ShaderProgram:
+    """Compile and link a program. Raises :class:`~nau_py.ShaderError`."""
     label = f"shader '{shader.name}' of library '{library}'"
     sources = {s: src for s in STAGES if (src := read_stage(shader, s)) is not None}
     unsupported = [s for s in ("ts", "ms") if s in sources]
@@ -158,25 +158,27 @@ def compile_program(ctx: Any, library: str, shader: Shader) -> Program:
     texts = {stage: source.text for stage, source in sources.items()}
     notes: list[str] = []
     try:
-        made = _link(ctx, texts)
+        made = _link_program(ctx, texts)
     except moderngl.Error as problem:
-        adapted, notes = adapt(texts)
+        adapted, notes = adapt_stages(texts)
         try:
             if not notes:
                 raise problem
-            made = _link(ctx, adapted)
+            made = _link_program(ctx, adapted)
         except moderngl.Error:
-            lacking = _lacking_extensions(ctx, sources, label)
-            raise ShaderError(lacking or _located(str(problem), sources, shader, label)) from None
+            lacking = _report_missing_extensions(ctx, sources, label)
+            raise ShaderError(
+                lacking or _locate_errors(str(problem), sources, shader, label)
+            ) from None
     except KeyError as problem:
         message = f"{label}: #include {problem} is not supported"
         raise ShaderError(error("G001", shader.location, message)) from None
     uniforms = {
-        name.removeprefix(renamed("")): UniformSlot(location, gl_type, length)
+        name.removeprefix(rename_word("")): UniformSlot(location, gl_type, length)
         for name, location, gl_type, length in gl.active_uniforms(made.glo)
     }
     inputs = [] if "cs" in sources else gl.active_inputs(made.glo)
-    return Program(
+    return ShaderProgram(
         library,
         shader.name or "",
         made,
@@ -193,8 +195,10 @@ _EXTENSION = re.compile(r"^\s*#\s*extension\s+(\w+)\s*:\s*(?:enable|require)\b")
 _LINE = re.compile(r"^#line (\d+)")
 
 
-def _lacking_extensions(ctx: Any, sources: dict[str, StageSource], label: str) -> list[Diagnostic]:
-    """Extensions that a program asks for, does not do without, and the driver does not have."""
+def _report_missing_extensions(
+    ctx: Any, sources: dict[str, StageSource], label: str
+) -> list[Diagnostic]:
+    """Report extensions that a program requires without an alternative and the driver lacks."""
     found = []
     for stage, source in sources.items():
         at = 0
@@ -212,7 +216,7 @@ def _lacking_extensions(ctx: Any, sources: dict[str, StageSource], label: str) -
     return found
 
 
-def _link(ctx: Any, texts: dict[str, str]) -> Any:
+def _link_program(ctx: Any, texts: dict[str, str]) -> Any:
     if "cs" in texts:
         return ctx.compute_shader(texts["cs"])
     return ctx.program(**{_STAGE_NAMES[stage]: text for stage, text in texts.items()})

@@ -1,4 +1,4 @@
-"""The GPU resources of a project by qualified name, made when first used."""
+"""GPU resources of a project by qualified name, made when first used."""
 
 from __future__ import annotations
 
@@ -20,13 +20,19 @@ from nau_py.model.texture import Texture as TextureNode
 from nau_py.process.paths import resolve
 from nau_py.raster import gl
 from nau_py.raster.blocks import UniformBlocks
-from nau_py.raster.buffers import initial_content
+from nau_py.raster.buffers import read_initial_content
 from nau_py.raster.device import Device
-from nau_py.raster.geometry import Geometry
-from nau_py.raster.programs import Program, compile_program, stage_files
+from nau_py.raster.geometry import GeometryCache
+from nau_py.raster.programs import ShaderProgram, compile_program, list_stage_files
 from nau_py.raster.samplers import Samplers
-from nau_py.raster.targets import COMPLETE, Attachment, Target, window_target
-from nau_py.raster.textures import Texture, cube_from_images, from_image, from_volume, make_texture
+from nau_py.raster.targets import COMPLETE, Attachment, Target, make_window_target
+from nau_py.raster.textures import (
+    GpuTexture,
+    make_cube_map,
+    make_image_texture,
+    make_texture,
+    make_volume_texture,
+)
 from nau_py.scene.images import ImageError, load_image
 from nau_py.scene.volume import is_volume, load_volume
 
@@ -34,7 +40,7 @@ from nau_py.scene.volume import is_volume, load_volume
 class Resources:
     """Textures, buffers, targets and programs of one project on one device.
 
-    ``diagnostics`` collects what could not be made; the draw that needs it goes on without.
+    ``diagnostics`` reports resources that could not be made; drawing continues without them.
     """
 
     def __init__(
@@ -43,23 +49,23 @@ class Resources:
         self.device = device
         self.project = project
         self.samplers = Samplers()
-        self.geometry = Geometry(device.ctx)
+        self.geometry = GeometryCache(device.ctx)
         self.blocks = UniformBlocks(device.ctx)
         self._check_size("the window", *window, project.file.location)
-        self.window = window_target(*window, texels)
+        self.window = make_window_target(*window, texels)
         self.diagnostics: list[Diagnostic] = []
         self._targets: dict[str, Target] = {}
-        self._textures: dict[str, Texture | None] = {}
+        self._textures: dict[str, GpuTexture | None] = {}
         self._owners: dict[str, tuple[str, RenderTarget] | None] = {}
         self._cleared: list[Any] = []
         self._buffers: dict[str, Any] = {}
-        self._programs: dict[tuple[str, str], Program | None] = {}
-        self._replaced: list[Program] = []
-        """Programs that were compiled anew: vertex arrays are kept by OpenGL's number of a program,
-        which must not come back."""
+        self._programs: dict[tuple[str, str], ShaderProgram | None] = {}
+        self._replaced: list[ShaderProgram] = []
+        """Old versions of recompiled programs. They stay alive because vertex arrays are stored by
+        OpenGL's number of a program, which must not be used again."""
 
     def release(self) -> None:
-        """Delete every GPU object that moderngl does not own."""
+        """Delete the GPU objects that moderngl does not own."""
         for texture in self._textures.values():
             if texture is not None:
                 texture.delete()
@@ -74,8 +80,8 @@ class Resources:
             message = f"{what} is {width} x {height}; this driver allows 1 to {most} each way"
             raise ProjectError(error("P010", where, message))
 
-    def _samples(self, what: str, wanted: int, where: Location) -> int:
-        """Samples a pixel, 0 for one. Raises where the driver allows fewer."""
+    def _check_samples(self, what: str, wanted: int, where: Location) -> int:
+        """Return the samples per pixel, 0 for one. Raise if the driver allows fewer."""
         if wanted > self.device.max_samples:
             most = self.device.max_samples
             message = f"{what} has {wanted} SAMPLES; this driver allows 0 to {most}"
@@ -83,7 +89,7 @@ class Resources:
         return wanted if wanted > 1 else 0
 
     def target(self, library: str, name: str) -> Target:
-        """A render target. Raises :class:`~nau_py.ProjectError` where it is incomplete."""
+        """Return a render target. Raises :class:`~nau_py.ProjectError` if it is incomplete."""
         key = f"{library}::{name}"
         if key not in self._targets:
             node = self.project.render_target(library, name)
@@ -116,7 +122,9 @@ class Resources:
             (r, g, b, a),
             max(int(value("LEVELS")[0]), 1),
             max(int(value("LAYERS")[0]), 1),
-            self._samples(f"render target '{node.name}'", int(value("SAMPLES")[0]), node.location),
+            self._check_samples(
+                f"render target '{node.name}'", int(value("SAMPLES")[0]), node.location
+            ),
             any(isinstance(c, CubeMapAttachment) for c in node.colors),
         )
         status = target.allocate()
@@ -128,10 +136,10 @@ class Resources:
             raise ProjectError(error("P010", node.location, message))
         return target
 
-    def texture(self, name: str, path: Path | None = None) -> Texture | None:
-        """A texture by qualified name, or by path for an image file of a model.
+    def texture(self, name: str, path: Path | None = None) -> GpuTexture | None:
+        """Return a texture by qualified name, or by path for an image file of a model.
 
-        None, with one diagnostic, where it cannot be made.
+        Return None, and report it once, if the texture cannot be made.
         """
         if name not in self._owners:
             self._owners[name] = self.project.target_of_texture(name)
@@ -148,30 +156,30 @@ class Resources:
                 self._textures[name] = None
         return self._textures[name]
 
-    def _make_texture(self, name: str, path: Path | None) -> Texture | None:
+    def _make_texture(self, name: str, path: Path | None) -> GpuTexture | None:
         if path is not None:
-            return from_image(load_image(path), mipmap=True)
+            return make_image_texture(load_image(path), mipmap=True)
         node = self.project.names("texture").get(name)
         if isinstance(node, CubeMap):
             folder = Path(node.location.file).parent
             axes = ("PosX", "NegX", "PosY", "NegY", "PosZ", "NegZ")
             files = [resolve(folder, getattr(node, f"file{axis}") or "").best for axis in axes]
-            faces = [_rgba(load_image(file)) for file in files]
+            faces = [_expand_to_rgba(load_image(file)) for file in files]
             if len({face.shape for face in faces}) > 1:
                 raise ImageError("its six faces differ in size")
-            return cube_from_images(faces, node.mipmap == "true")
+            return make_cube_map(faces, node.mipmap == "true")
         if isinstance(node, TextureNode) and node.filename:
             file = resolve(Path(node.location.file).parent, node.filename).best
             if is_volume(file):
-                return from_volume(load_volume(file))
-            return from_image(load_image(file), bool(node.mipmap))
+                return make_volume_texture(load_volume(file))
+            return make_image_texture(load_image(file), bool(node.mipmap))
         if isinstance(node, TextureNode):
-            return self._empty(node, "TEXTURE")
+            return self._make_empty_texture(node, "TEXTURE")
         if isinstance(node, ArrayOfTextures):
-            return self._empty(node, "ARRAY_OF_TEXTURES")
+            return self._make_empty_texture(node, "ARRAY_OF_TEXTURES")
         return None
 
-    def _empty(self, node: TextureNode | ArrayOfTextures, type_: str) -> Texture:
+    def _make_empty_texture(self, node: TextureNode | ArrayOfTextures, type_: str) -> GpuTexture:
         def number(attribute: str) -> int:
             return int(self.project.value(node, type_, attribute)[0])
 
@@ -185,7 +193,9 @@ class Resources:
         if type_ == "TEXTURE":
             content = str(self.project.value(node, type_, "CONTENT")[0])
         if content == "NONE":
-            samples = self._samples(f"texture '{node.name}'", number("SAMPLES"), node.location)
+            samples = self._check_samples(
+                f"texture '{node.name}'", number("SAMPLES"), node.location
+            )
             layers = max(number("LAYERS"), 1)
             deep = depth if depth > 1 else 0
             return make_texture(fmt, width, height, levels, layers, deep, samples)
@@ -199,15 +209,15 @@ class Resources:
         return texture
 
     def buffer(self, name: str) -> Any:
-        """A GPU buffer with its initial content; None where it is undefined or empty."""
+        """Return a GPU buffer with its initial content, or None if it is undefined or empty."""
         if name not in self._buffers:
             node = self.project.names("buffer").get(name)
             self._buffers[name] = None
             if isinstance(node, PhysicsMaterial):
-                self._buffers[name] = self._particles(node)
+                self._buffers[name] = self._make_particles(node)
             if isinstance(node, Buffer):
                 try:
-                    content = initial_content(self.project, node)
+                    content = read_initial_content(self.project, node)
                 except (OSError, ValueError) as problem:
                     message = f"buffer '{name}': its file cannot be read: {problem}"
                     self.diagnostics.append(error("B001", node.location, message))
@@ -218,18 +228,18 @@ class Resources:
                         self._cleared.append(self._buffers[name])
         return self._buffers[name]
 
-    def _particles(self, node: PhysicsMaterial) -> Any:
-        """The positions, vec4, of the particles of a body that nothing simulates: all zero."""
+    def _make_particles(self, node: PhysicsMaterial) -> Any:
+        """Make the positions, vec4, of a body's particles. Nothing simulates them: all are zero."""
         most = int(self.project.value(node, "PHYSICS_MATERIAL", "MAX_PARTICLES")[0])
         return self.device.ctx.buffer(bytes(16 * most)) if most > 0 else None
 
     def clear_buffers_by_frame(self) -> None:
-        """Fill the buffers whose CLEAR is BY_FRAME with zero (docs/format.md, 11.1)."""
+        """Fill buffers with zero if their CLEAR is BY_FRAME (docs/format.md, 11.1)."""
         for made in self._cleared:
             made.clear()
 
-    def program(self, library: str, name: str) -> Program | None:
-        """A program; None, with its diagnostics, where it does not compile."""
+    def program(self, library: str, name: str) -> ShaderProgram | None:
+        """Return a program, or None if it does not compile, and report its errors."""
         key = (library, name)
         if key not in self._programs:
             found = self.project.shader(library, name)
@@ -247,15 +257,14 @@ class Resources:
         return self._programs[key]
 
     def reload_programs(self, files: set[Path]) -> int:
-        """Compile anew the programs that stand in ``files`` (resolved paths), and say how many.
+        """Recompile the programs with a source in ``files`` (resolved paths); return their number.
 
-        Raises :class:`~nau_py.ShaderError` where one does not compile; all are then as they
-        were.
+        Raises :class:`~nau_py.ShaderError` if one does not compile; then no program changes.
         """
-        made: dict[tuple[str, str], Program] = {}
+        made: dict[tuple[str, str], ShaderProgram] = {}
         for key in self._programs:
             found = self.project.shader(*key)
-            if found is None or not files & set(stage_files(found[1])):
+            if found is None or not files & set(list_stage_files(found[1])):
                 continue
             made[key] = compile_program(self.device.ctx, key[0], found[1])
         for key, program in made.items():
@@ -267,21 +276,23 @@ class Resources:
         return len(made)
 
     def check(self) -> None:
-        """Raise what has gone wrong so far, if any of it is an error."""
+        """Raise :class:`~nau_py.NauError` if an error has been reported so far."""
         errors = [d for d in self.diagnostics if d.severity == "error"]
         if errors:
             raise NauError(errors)
 
     def made_target(self, name: str) -> Target | None:
-        """The render target of that qualified name, if it has been used."""
+        """Return the render target of that qualified name, if it has been used."""
         return self._targets.get(name)
 
     def barrier(self) -> None:
         gl.barrier()
 
 
-def _rgba(texels: np.ndarray[Any, np.dtype[np.uint8]]) -> np.ndarray[Any, np.dtype[np.uint8]]:
-    """Any channel count to RGBA: grey is spread, missing alpha is 255."""
+def _expand_to_rgba(
+    texels: np.ndarray[Any, np.dtype[np.uint8]],
+) -> np.ndarray[Any, np.dtype[np.uint8]]:
+    """Convert any number of channels to RGBA: repeat grey; missing alpha is 255."""
     if texels.shape[2] == 4:
         return texels
     grey = np.repeat(texels[:, :, :1], 3, axis=2)

@@ -24,8 +24,8 @@ _PLAIN = {
 _MIPPED = {"NEAREST": "NEAREST_MIPMAP_NEAREST", "LINEAR": "LINEAR_MIPMAP_LINEAR"}
 
 
-def minification(name: str | None, mipmap: bool) -> str:
-    """The filter to use: Nau coerces to the variant that the texture supports."""
+def choose_filter(name: str | None, mipmap: bool) -> str:
+    """Choose the filter: the variant that the texture supports, as Nau does."""
     if name is None:
         return "LINEAR_MIPMAP_LINEAR" if mipmap else "LINEAR"
     return _MIPPED.get(name, name) if mipmap else _PLAIN.get(name, name)
@@ -38,14 +38,14 @@ class Samplers:
         self._made: dict[tuple[Settings, bool], int] = {}
 
     def get(self, settings: Settings, mipmap: bool) -> int:
-        """The sampler for ``settings`` on a texture that has (``mipmap``) mip levels."""
+        """Return the sampler for ``settings``. ``mipmap``: the texture has mip levels."""
         key = (settings, mipmap)
         if key not in self._made:
             self._made[key] = self._make(dict(settings), mipmap)
         return self._made[key]
 
     def release(self) -> None:
-        """Delete every sampler."""
+        """Delete all samplers."""
         gl.delete_samplers(list(self._made.values()))
         self._made.clear()
 
@@ -58,7 +58,7 @@ class Samplers:
         for name, parameter in _WRAPS.items():
             GL.glSamplerParameteri(sampler, parameter, enum(name, "REPEAT"))
         given = settings.get("MIN_FILTER")
-        filter_ = minification(str(given[0]) if given else None, mipmap)
+        filter_ = choose_filter(str(given[0]) if given else None, mipmap)
         GL.glSamplerParameteri(sampler, GL.GL_TEXTURE_MIN_FILTER, getattr(GL, f"GL_{filter_}"))
         GL.glSamplerParameteri(sampler, GL.GL_TEXTURE_MAG_FILTER, enum("MAG_FILTER", "LINEAR"))
         compare = enum("COMPARE_MODE", "NONE")

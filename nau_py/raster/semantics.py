@@ -1,61 +1,31 @@
-"""Where uniform values come from: types, contexts and components (docs/format.md, 8 and 9)."""
+"""Values of uniforms by type, context and component (docs/format.md, 8 and 9)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from nau_py.model.passes import Pass
-from nau_py.raster.objects import SOURCES, Value, material_named
+from nau_py.raster.draw_context import DrawContext
+from nau_py.raster.objects import SOURCES, Value, find_material
 from nau_py.scene.camera import CameraState
-from nau_py.scene.lights import LightState
-from nau_py.scene.material import RenderMaterial
 from nau_py.scene.mesh import F64
 from nau_py.scene.transforms import inverse, to_unit_cube
-from nau_py.scene.viewport import Rect
-from nau_py.scene.world import World
-
-if TYPE_CHECKING:
-    from nau_py.raster.resources import Resources
 
 
-@dataclass(slots=True)
-class DrawContext:
-    """What uniform sources can refer to while one pass draws."""
-
-    world: World
-    resources: Resources
-    pass_: Pass
-    frame: int
-    timer_ms: float
-    camera: CameraState
-    rect: Rect
-    lights: list[LightState]
-    projection: F64
-    view: F64
-    target: str | None = None
-    material: RenderMaterial | None = None
-    model: F64 = field(default_factory=lambda: np.eye(4))
-    instances: int = 0
-    pipeline: str = ""
-    indirect: str | None = None
-    """The buffer of draw commands, where the pass names one."""
-
-
-def column_major(matrix: F64) -> Value:
-    """A (k, k) matrix as OpenGL stores it: flat, column after column."""
+def to_column_major(matrix: F64) -> Value:
+    """Flatten a (k, k) matrix as OpenGL stores it, column after column: float32."""
     return np.ascontiguousarray(matrix.T, np.float32).reshape(-1)
 
 
-def _scalars(values: tuple[Any, ...]) -> Value:
+def _to_value(values: tuple[Any, ...]) -> Value:
     return np.array([float(v) for v in values], np.float64)
 
 
-def camera_value(camera: CameraState, component: str, aspect: float) -> Value | None:
-    """A CAMERA attribute; matrices column-major."""
+def compute_camera_value(camera: CameraState, component: str, aspect: float) -> Value | None:
+    """Compute a CAMERA attribute; matrices are column-major."""
     vectors: dict[str, tuple[F64, float]] = {
         "POSITION": (camera.position, 1.0),
         "VIEW": (camera.view, 0.0),
@@ -81,21 +51,21 @@ def camera_value(camera: CameraState, component: str, aspect: float) -> Value | 
         ),
     }
     make = matrices.get(component)
-    return column_major(make()) if make else None
+    return to_column_major(make()) if make else None
 
 
-def normal_matrix(view_model: F64) -> F64:
-    """Inverse transpose of the upper 3x3; only transposed twice where it is singular (9.12)."""
+def compute_normal_matrix(view_model: F64) -> F64:
+    """Compute the inverse transpose of the upper 3x3; return a singular one as it is (9.12)."""
     linear = view_model[:3, :3]
     if abs(np.linalg.det(linear)) <= np.finfo(np.float32).eps:
         return linear
     return np.asarray(np.linalg.inv(linear).T)
 
 
-def _renderer(context: DrawContext, component: str) -> Value | None:
+def _find_renderer_value(context: DrawContext, component: str) -> Value | None:
     written = context.world.renderer_values.get(component)
     if written is not None:
-        return _scalars(written)
+        return _to_value(written)
     v, p, m = context.view, context.projection, context.model
     matrices: dict[str, Callable[[], F64]] = {
         "PROJECTION": lambda: p,
@@ -106,10 +76,10 @@ def _renderer(context: DrawContext, component: str) -> Value | None:
         "PROJECTION_VIEW": lambda: p @ v,
         "PROJECTION_VIEW_MODEL": lambda: p @ v @ m,
         "TS05_PVM": lambda: to_unit_cube() @ p @ v,
-        "NORMAL": lambda: normal_matrix(v @ m),
+        "NORMAL": lambda: compute_normal_matrix(v @ m),
     }
     if component in matrices:
-        return column_major(matrices[component]())
+        return to_column_major(matrices[component]())
     numbers: dict[str, float] = {
         "LIGHT_COUNT": len(context.lights),
         "FRAME_COUNT": context.frame,
@@ -121,26 +91,26 @@ def _renderer(context: DrawContext, component: str) -> Value | None:
     if component == "TEXTURE_COUNT":
         units = context.material.textures if context.material else {}
         return np.array([sum(1 << unit for unit in units)])
-    return _default("RENDERER", component, context)
+    return _find_default("RENDERER", component, context)
 
 
-def _default(type_: str, component: str, context: DrawContext) -> Value | None:
+def _find_default(type_: str, component: str, context: DrawContext) -> Value | None:
     set_ = context.world.project.registry.get(type_)
     attribute = set_.get(component) if set_ else None
     if attribute is None or not attribute.default or not attribute.type.is_number:
         return None
-    return _scalars(context.world.project.default(type_, component))
+    return _to_value(context.world.project.default(type_, component))
 
 
-def _camera(context: DrawContext, name: str, component: str) -> Value | None:
+def _find_camera_value(context: DrawContext, name: str, component: str) -> Value | None:
     if name == "CURRENT":
-        return camera_value(context.camera, component, context.rect.aspect)
+        return compute_camera_value(context.camera, component, context.rect.aspect)
     camera = context.world.camera(name)
     aspect = context.world.viewport(camera.viewport).aspect
-    return camera_value(camera, component, aspect)
+    return compute_camera_value(camera, component, aspect)
 
 
-def _light(context: DrawContext, name: str, component: str, index: int) -> Value | None:
+def _find_light_value(context: DrawContext, name: str, component: str, index: int) -> Value | None:
     if name != "CURRENT":
         light = context.world.light(name)
     elif index < len(context.lights):
@@ -150,10 +120,10 @@ def _light(context: DrawContext, name: str, component: str, index: int) -> Value
     if component == "ID":
         return np.array([index])
     values = light.values.get(component)
-    return None if values is None else _scalars(values)
+    return None if values is None else _to_value(values)
 
 
-def _viewport(context: DrawContext, name: str, component: str) -> Value | None:
+def _find_viewport_value(context: DrawContext, name: str, component: str) -> Value | None:
     rect = context.rect if name == "CURRENT" else context.world.viewport(name)
     values: dict[str, tuple[float, ...]] = {
         "ORIGIN": (rect.x, rect.y),
@@ -164,11 +134,11 @@ def _viewport(context: DrawContext, name: str, component: str) -> Value | None:
         "CLEAR_COLOR": rect.clear,
     }
     found = values.get(component)
-    return _scalars(found) if found else _default("VIEWPORT", component, context)
+    return _to_value(found) if found else _find_default("VIEWPORT", component, context)
 
 
-def _pass(context: DrawContext, name: str, component: str) -> Value | None:
-    """A PASS attribute of the running pass, or of ``pipeline#pass``."""
+def _find_pass_value(context: DrawContext, name: str, component: str) -> Value | None:
+    """Find a PASS attribute of the running pass, or of ``pipeline#pass``."""
     project = context.world.project
     pass_: Pass | None = context.pass_
     if name != "CURRENT":
@@ -178,38 +148,38 @@ def _pass(context: DrawContext, name: str, component: str) -> Value | None:
     if pass_ is None or component not in project.registry["PASS"]:
         return None
     values = project.value(pass_, "PASS", component)
-    return None if not values or isinstance(values[0], str) else _scalars(values)
+    return None if not values or isinstance(values[0], str) else _to_value(values)
 
 
-def resolve(
+def resolve_source(
     context: DrawContext, type_: str, name: str, component: str, index: int
 ) -> Value | None:
-    """The value of a source, flat; None where it has none, so that the uniform keeps its own.
+    """Find the value of a source, flat: float64, or column-major float32 for matrices.
 
-    float64 for scalars and vectors, column-major float32 for matrices.
+    Return None if it has none; the uniform then keeps its value.
     """
     if type_ == "RENDERER":
-        return _renderer(context, component)
+        return _find_renderer_value(context, component)
     if type_ == "CAMERA":
-        return _camera(context, name, component)
+        return _find_camera_value(context, name, component)
     if type_ == "LIGHT":
-        return _light(context, name, component, index)
+        return _find_light_value(context, name, component, index)
     if type_ == "VIEWPORT":
-        return _viewport(context, name, component)
+        return _find_viewport_value(context, name, component)
     if type_ == "PASS":
-        return _pass(context, name, component)
+        return _find_pass_value(context, name, component)
     if type_ == "COLOR":
-        material = material_named(context, name)
+        material = find_material(context, name)
         colour = material.colours.get(component) if material else None
-        return _scalars(colour) if colour else _default(type_, component, context)
+        return _to_value(colour) if colour else _find_default(type_, component, context)
     if type_ == "TEXTURE_BINDING":
-        material = material_named(context, name)
+        material = find_material(context, name)
         bound = material is not None and index in material.textures
         return np.array([index]) if bound and component == "UNIT" else None
     if type_ == "IMAGE_TEXTURE":
         return np.array([index]) if component == "UNIT" else None
     if type_ in ("ARRAY_OF_TEXTURES_BINDING", "ARRAY_OF_IMAGE_TEXTURES"):
-        material = material_named(context, name)
+        material = find_material(context, name)
         images = type_ == "ARRAY_OF_IMAGE_TEXTURES"
         arrays = (material.image_arrays if images else material.texture_arrays) if material else []
         if index >= len(arrays) or component not in ("SAMPLER_ARRAY", "FIRST_UNIT"):

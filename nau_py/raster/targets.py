@@ -8,7 +8,7 @@ import numpy as np
 
 from nau_py.raster import gl
 from nau_py.raster.gl import GL
-from nau_py.raster.textures import Texture, make_texture
+from nau_py.raster.textures import GpuTexture, make_texture
 from nau_py.scene.viewport import Rect
 
 
@@ -34,19 +34,19 @@ class Target:
     layers: int = 1
     samples: int = 0
     cube: bool = False
-    """Whether its textures are cube maps: six layers, faces in OpenGL's order."""
+    """True if its textures are cube maps: six layers, faces in OpenGL's order."""
     fbo: int = 0
-    textures: dict[str, Texture] = field(default_factory=dict)
+    textures: dict[str, GpuTexture] = field(default_factory=dict)
 
     def allocate(self) -> int:
         """Create textures and framebuffer. Returns the OpenGL completeness status."""
         self.fbo = gl.create_framebuffer()
         for index, attachment in enumerate(self.colors):
-            texture = self._texture(attachment, self.levels)
+            texture = self._make_texture(attachment, self.levels)
             self.textures[attachment.name] = texture
             point = GL.GL_COLOR_ATTACHMENT0 + index
             GL.glNamedFramebufferTexture(self.fbo, point, texture.glo, 0)
-        depth = self._texture(self.depth, 1)
+        depth = self._make_texture(self.depth, 1)
         self.textures[self.depth.name] = depth
         point = GL.GL_DEPTH_STENCIL_ATTACHMENT if depth.format.stencil else GL.GL_DEPTH_ATTACHMENT
         GL.glNamedFramebufferTexture(self.fbo, point, depth.glo, 0)
@@ -54,7 +54,7 @@ class Target:
         GL.glNamedFramebufferDrawBuffers(self.fbo, len(buffers), np.array(buffers, np.uint32))
         return int(GL.glCheckNamedFramebufferStatus(self.fbo, GL.GL_FRAMEBUFFER))
 
-    def _texture(self, attachment: Attachment, levels: int) -> Texture:
+    def _make_texture(self, attachment: Attachment, levels: int) -> GpuTexture:
         return make_texture(
             attachment.format,
             self.width,
@@ -66,7 +66,7 @@ class Target:
         )
 
     def resize(self, width: int, height: int) -> None:
-        """Re-allocate every attachment where the size differs; the content is lost."""
+        """Allocate all attachments again if the size differs. Their content is lost."""
         if (width, height) == (self.width, self.height):
             return
         self.delete()
@@ -113,8 +113,8 @@ class Target:
 COMPLETE = int(GL.GL_FRAMEBUFFER_COMPLETE)
 
 
-def window_target(width: int, height: int, texels: str = "RGBA") -> Target:
-    """The window: 8-bit RGBA, or other ``texels``, with depth and stencil, never shown."""
+def make_window_target(width: int, height: int, texels: str = "RGBA") -> Target:
+    """Make the window, which is never shown: 8-bit RGBA or other ``texels``, depth, stencil."""
     target = Target(
         "window",
         width,
@@ -123,7 +123,7 @@ def window_target(width: int, height: int, texels: str = "RGBA") -> Target:
         Attachment("window_depth", "DEPTH24_STENCIL8"),
     )
     target.allocate()
-    # clears keep to a pass's first viewport: elsewhere a window begins as a driver makes it
+    # Clears are limited to the first viewport of a pass; elsewhere the depth is set here.
     target.bind(Rect(0.0, 0.0, float(width), float(height)))
     target.clear_depth(1.0)
     return target

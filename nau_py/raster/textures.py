@@ -15,7 +15,7 @@ from nau_py.raster.gl import GL
 
 
 @dataclass(slots=True)
-class Texture:
+class GpuTexture:
     """An OpenGL texture. ``glo`` is its name, ``target`` its kind."""
 
     glo: int
@@ -28,19 +28,19 @@ class Texture:
     samples: int = 0
 
     def read(self, level: int = 0) -> NDArray[Any]:
-        """The texels of a 2D texture: (height, width, channels), row 0 at the bottom.
+        """Read the texels of a 2D texture: (height, width, channels), row 0 at the bottom.
 
-        Of a multisample texture each is the mean of its samples, or one of them for integers and
-        depth.
+        A texel of a multisample texture is the mean of its samples; for integers and depth it is
+        one of them.
         """
         if self.samples:
-            return self._resolved()
+            return self._read_resolved()
         width, height = max(self.width >> level, 1), max(self.height >> level, 1)
         out = np.empty((height, width, self.format.channels), self.format.dtype)
         gl.read_texture(self.glo, level, self.format.layout, self.format.kind, out)
         return out
 
-    def _resolved(self) -> NDArray[Any]:
+    def _read_resolved(self) -> NDArray[Any]:
         single = make_texture(self.format.name, self.width, self.height)
         gl.resolve_samples(
             self.glo, single.glo, self.width, self.height, self.format.depth, self.format.stencil
@@ -50,7 +50,7 @@ class Texture:
         return texels
 
     def read_values(self) -> NDArray[Any]:
-        """As :meth:`read`, bytes as float32 in 0..1."""
+        """Read as :meth:`read` does; bytes become float32 in 0..1."""
         texels = self.read()
         return texels.astype(np.float32) / np.float32(255) if texels.dtype == np.uint8 else texels
 
@@ -62,8 +62,10 @@ class Texture:
         )
 
     def write_values(self, values: NDArray[Any]) -> None:
-        """As :meth:`write`, from floats: normalised formats take 0..1, half floats saturate, for
-        infinity would spread through blurs."""
+        """Write as :meth:`write` does, from floats: normalised formats take 0..1.
+
+        Half floats saturate, because infinity would spread through blurs.
+        """
         dtype = self.format.dtype
         if np.issubdtype(dtype, np.integer) and not self.format.integer:
             scale = np.float32(np.iinfo(np.dtype(dtype)).max)
@@ -74,7 +76,7 @@ class Texture:
         self.write(values)
 
     def clear(self, level: int | None = None) -> None:
-        """Fill a level, or every one, with zero."""
+        """Fill a level, or all of them, with zero."""
         chosen = range(self.levels) if level is None else [level]
         gl.clear_texture(self.glo, list(chosen), self.format.layout, self.format.kind)
 
@@ -86,8 +88,8 @@ class Texture:
         gl.delete_textures([self.glo])
 
 
-def complete_chain(width: int, height: int, depth: int = 1) -> int:
-    """Levels of a complete mip chain."""
+def count_mip_levels(width: int, height: int, depth: int = 1) -> int:
+    """Count the levels of a complete mip chain."""
     return floor(log2(max(width, height, depth, 1))) + 1
 
 
@@ -100,10 +102,11 @@ def make_texture(
     depth: int = 0,
     samples: int = 0,
     cube: bool = False,
-) -> Texture:
-    """Zero-filled storage of internal format ``name``: cube map, multisample, 3D, array or 2D.
+) -> GpuTexture:
+    """Make a texture of internal format ``name``, filled with zero.
 
-    The kind is chosen in that order (docs/format.md, 6.3); ``depth`` 0 is none. A cube map is
+    It is a cube map, multisample, 3D, array or 2D texture; the first that the sizes ask for, in
+    that order (docs/format.md, 6.3). ``depth`` 0 is none. A cube map is
     ``width`` on each side; a multisample texture has one level.
     """
     fmt = pixel_format(name)
@@ -120,7 +123,7 @@ def make_texture(
         target, sizes = GL.GL_TEXTURE_2D_ARRAY, (width, height, layers)
     else:
         target, sizes = GL.GL_TEXTURE_2D, (width, height)
-    texture = Texture(gl.create_texture(target), target, fmt, *sizes[:2])
+    texture = GpuTexture(gl.create_texture(target), target, fmt, *sizes[:2])
     texture.layers = 6 if cube else sizes[2] if len(sizes) == 3 else 1
     storage = f"glTextureStorage{len(sizes)}D"
     if samples > 1 and not cube:
@@ -140,10 +143,10 @@ def make_texture(
 _BYTE_FORMATS = {1: "R8", 2: "RG8", 4: "RGBA"}
 
 
-def from_image(texels: NDArray[np.uint8], mipmap: bool) -> Texture:
-    """A texture of decoded texels (height, width, channels), row 0 at the bottom."""
+def make_image_texture(texels: NDArray[np.uint8], mipmap: bool) -> GpuTexture:
+    """Make a texture of decoded texels (height, width, channels), row 0 at the bottom."""
     height, width, channels = texels.shape
-    levels = complete_chain(width, height) if mipmap else 1
+    levels = count_mip_levels(width, height) if mipmap else 1
     texture = make_texture(_BYTE_FORMATS[channels], width, height, levels)
     texture.write(texels)
     texture.generate_mipmaps()
@@ -153,8 +156,8 @@ def from_image(texels: NDArray[np.uint8], mipmap: bool) -> Texture:
 _VOLUME_FORMATS = {"uint8": "R8", "uint16": "R16", "float32": "R32F"}
 
 
-def from_volume(texels: NDArray[Any]) -> Texture:
-    """A 3D texture of one channel from (depth, height, width) of uint8, uint16 or float32."""
+def make_volume_texture(texels: NDArray[Any]) -> GpuTexture:
+    """Make a 3D texture of one channel from (depth, height, width): uint8, uint16 or float32."""
     depth, height, width = texels.shape
     name = _VOLUME_FORMATS[texels.dtype.name]
     texture = make_texture(name, width, height, depth=depth)
@@ -163,10 +166,10 @@ def from_volume(texels: NDArray[Any]) -> Texture:
     return texture
 
 
-def cube_from_images(faces: list[NDArray[np.uint8]], mipmap: bool) -> Texture:
-    """A cube map from six equal RGBA faces: +x -x +y -y +z -z, rows from the bottom up."""
+def make_cube_map(faces: list[NDArray[np.uint8]], mipmap: bool) -> GpuTexture:
+    """Make a cube map from six equal RGBA faces: +x -x +y -y +z -z, rows from the bottom up."""
     height, width = faces[0].shape[:2]
-    levels = complete_chain(width, height) if mipmap else 1
+    levels = count_mip_levels(width, height) if mipmap else 1
     texture = make_texture("RGBA", width, height, levels, cube=True)
     fmt = texture.format
     for index, face in enumerate(faces):

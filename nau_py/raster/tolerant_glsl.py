@@ -1,7 +1,7 @@
-"""GLSL that some drivers accept and others reject, made acceptable to both.
+"""Changes to GLSL that some drivers accept and others reject, so that both accept it.
 
-Nau's projects were written on NVIDIA's driver, which is laxer than the standard. These changes are
-tried only where the driver at hand rejects the text as it is; each keeps the lines where they are.
+Nau's projects were written on NVIDIA's driver, which is less strict than the standard. The changes
+are tried only if the driver rejects the text. Each keeps the numbers of the lines.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import re
 from itertools import pairwise
 
 HIGHEST = 450
-"""The newest version that an OpenGL 4.5 context compiles."""
+"""Newest version that an OpenGL 4.5 context compiles."""
 _RESERVED = ("input", "output")
 """Words that GLSL reserves (4.50 specification, 3.6) and that projects use as names."""
 _VERSION = re.compile(r"^([ \t]*#[ \t]*version[ \t]+)(\d+)", re.MULTILINE)
@@ -28,24 +28,24 @@ _BRACES = re.compile(r"=\s*\{")
 ORDER = ("vs", "tc", "te", "gs", "ps")
 
 
-def renamed(name: str) -> str:
-    """What a reserved word is called instead."""
+def rename_word(name: str) -> str:
+    """Return the name that replaces a reserved word."""
     return f"nau_{name}"
 
 
-def adapt(texts: dict[str, str]) -> tuple[dict[str, str], list[str]]:
-    """The stages with changes, and what was changed. No change: the driver is right."""
+def adapt_stages(texts: dict[str, str]) -> tuple[dict[str, str], list[str]]:
+    """Change the stages; return them with a note for each change. Without notes nothing helps."""
     changed = dict(texts)
     notes: list[str] = []
     for stage, text in texts.items():
-        changed[stage] = _alone(text, stage, notes)
-    _types_of_inputs(changed, notes)
-    _types_of_uniforms(changed, notes)
+        changed[stage] = _adapt_stage(text, stage, notes)
+    _match_input_types(changed, notes)
+    _match_uniform_types(changed, notes)
     return changed, notes
 
 
-def _alone(text: str, stage: str, notes: list[str]) -> str:
-    code = _without_comments(text)
+def _adapt_stage(text: str, stage: str, notes: list[str]) -> str:
+    code = _blank_comments(text)
     version = _VERSION.search(code)
     number = int(version[2]) if version else 110
     wanted = number
@@ -58,19 +58,19 @@ def _alone(text: str, stage: str, notes: list[str]) -> str:
         notes.append(f"stage {stage}: #version {number} became {wanted}")
     for word in _RESERVED:
         if re.search(rf"\b{word}\b", code):
-            text = re.sub(rf"\b{word}\b", renamed(word), text)
+            text = re.sub(rf"\b{word}\b", rename_word(word), text)
             notes.append(f"stage {stage}: the reserved word '{word}' became a name")
     if _LAYOUT_PARAMETER.search(code):
-        text = _without_dead_functions(text, stage, notes)
-        if _LAYOUT_PARAMETER.search(_without_comments(text)):
+        text = _remove_dead_functions(text, stage, notes)
+        if _LAYOUT_PARAMETER.search(_blank_comments(text)):
             text = _LAYOUT_PARAMETER.sub(r"\1", text)
             notes.append(f"stage {stage}: layout() of a function parameter was left out")
     return text
 
 
-def _without_dead_functions(text: str, stage: str, notes: list[str]) -> str:
-    """Functions with layout() parameters that nobody calls, blanked out line for line."""
-    code = _without_comments(text)
+def _remove_dead_functions(text: str, stage: str, notes: list[str]) -> str:
+    """Blank out functions with layout() parameters that are never called."""
+    code = _blank_comments(text)
     for match in list(_LAYOUT_FUNCTION.finditer(code)):
         name = match["name"]
         if len(re.findall(rf"\b{name}\b", code)) > 1:
@@ -85,15 +85,15 @@ def _without_dead_functions(text: str, stage: str, notes: list[str]) -> str:
     return text
 
 
-def _types_of_inputs(texts: dict[str, str], notes: list[str]) -> None:
-    """What a stage takes in gets the type that the stage before gives out."""
+def _match_input_types(texts: dict[str, str], notes: list[str]) -> None:
+    """Give the inputs of the fragment stage the types of the outputs before it."""
     stages = [s for s in ORDER if s in texts]
     for before, after in pairwise(stages):
         if after != "ps":
             continue  # arrays of vertices
         given = {
             m["name"]: m["type"]
-            for m in _INTERFACE.finditer(_without_comments(texts[before]))
+            for m in _INTERFACE.finditer(_blank_comments(texts[before]))
             if m["way"] == "out"
         }
 
@@ -107,25 +107,25 @@ def _types_of_inputs(texts: dict[str, str], notes: list[str]) -> None:
         texts[after] = _INTERFACE.sub(same, texts[after])
 
 
-def _types_of_uniforms(texts: dict[str, str], notes: list[str]) -> None:
-    """A uniform that two stages declare with different types is dropped where it is not used."""
+def _match_uniform_types(texts: dict[str, str], notes: list[str]) -> None:
+    """Remove unused uniforms that two stages declare with different types."""
     types: dict[str, dict[str, str]] = {}
     for stage, text in texts.items():
-        for match in _UNIFORM.finditer(_without_comments(text)):
+        for match in _UNIFORM.finditer(_blank_comments(text)):
             for name in match["names"].split(","):
                 types.setdefault(name.strip(), {})[stage] = match["type"]
     for name, listed in types.items():
         if len(set(listed.values())) < 2:
             continue
         for stage in listed:
-            uses = len(re.findall(rf"\b{name}\b", _without_comments(texts[stage])))
+            uses = len(re.findall(rf"\b{name}\b", _blank_comments(texts[stage])))
             if uses == 1:
-                texts[stage] = _UNIFORM.sub(lambda m, n=name: _less(m, n), texts[stage])  # type: ignore[misc]
+                texts[stage] = _UNIFORM.sub(lambda m, n=name: _remove_name(m, n), texts[stage])  # type: ignore[misc]
                 notes.append(f"stage {stage}: the unused uniform '{name}' was left out")
 
 
-def _less(declaration: re.Match[str], name: str) -> str:
-    """A declaration of uniforms without ``name``."""
+def _remove_name(declaration: re.Match[str], name: str) -> str:
+    """Remove ``name`` from a declaration of uniforms."""
     names = [n.strip() for n in declaration["names"].split(",")]
     if name not in names:
         return declaration[0]
@@ -133,8 +133,8 @@ def _less(declaration: re.Match[str], name: str) -> str:
     return f"uniform {declaration['type']} {rest};" if rest else ""
 
 
-def _without_comments(text: str) -> str:
-    """``text`` with comments blanked out, line for line."""
+def _blank_comments(text: str) -> str:
+    """Replace comments by spaces, keeping line numbers."""
 
     def blank(match: re.Match[str]) -> str:
         return re.sub(r"[^\n]", " ", match[0])

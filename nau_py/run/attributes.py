@@ -14,7 +14,7 @@ from nau_py.model.passes import Pass
 from nau_py.model.values import DataType, Scalar
 from nau_py.passes.drawing import camera_context, window_view
 from nau_py.passes.frame import FrameContext
-from nau_py.raster.buffers import basic_types
+from nau_py.raster.buffers import list_scalar_types
 from nau_py.scene.material import ImageBinding, RenderMaterial
 
 SETTABLE = ("RENDERER", "PASS", "CAMERA", "LIGHT", "VIEWPORT", "COLOR", "IMAGE_TEXTURE")
@@ -33,7 +33,7 @@ class Attributes:
     ) -> list[float]:
         """Return the numbers of an attribute, matrices column by column. Raises ValueError for an
         unknown name."""
-        from nau_py.raster.semantics import resolve
+        from nau_py.raster.semantics import resolve_source
 
         if type_ == "IMAGE_TEXTURE" and component != "UNIT":
             settings = dict(self._image(frame, name, index).settings)
@@ -42,7 +42,7 @@ class Attributes:
             values = self.project.value(self._viewport(name), "VIEWPORT", component)
             return [float(v) for v in values]
         context = camera_context(pass_, frame, window_view(frame))
-        found = resolve(context, type_, name, component, index)
+        found = resolve_source(context, type_, name, component, index)
         if found is None:
             raise ValueError(f"{type_} '{name}' has no attribute '{component}' that can be read")
         return [float(v) for v in np.asarray(found).reshape(-1)]
@@ -150,7 +150,7 @@ class Attributes:
 
 
 def _layout(type_: str) -> tuple[np.dtype[Any], int]:
-    types = basic_types(type_) if type_ in DataType.__members__ else []
+    types = list_scalar_types(type_) if type_ in DataType.__members__ else []
     if not types:
         near = suggest_name(type_, list(DataType.__members__))
         raise ValueError(f"'{type_}' is no type of a buffer's entry{near}")

@@ -142,7 +142,7 @@ class Renderer:
         return self._session
 
     def _open(self) -> Session:
-        from nau_py.raster.device import device
+        from nau_py.raster.device import get_device
         from nau_py.raster.resources import Resources
 
         world = World(self.project, self._size)
@@ -150,7 +150,7 @@ class Renderer:
         if errors:
             raise ProjectError(errors)
         add_new(self.diagnostics, world.diagnostics)
-        resources = Resources(device(), self.project, self._size, self._options.window_format)
+        resources = Resources(get_device(), self.project, self._size, self._options.window_format)
         name = self.pipeline.name or ""
         return Session(self.project, name, world, resources, self._options, progress=self._progress)
 

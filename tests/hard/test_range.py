@@ -32,9 +32,9 @@ def test_fp16_overflow(folder: Folder, value: float) -> None:
 
 def test_tonemap_inf_nan() -> None:
     """``develop``: infinity is white, NaN magenta, below 0 black, 0 and 1 themselves."""
-    from nau_py.raster.device import device
+    from nau_py.raster.device import get_device
 
-    ctx = device().ctx
+    ctx = get_device().ctx
     values = np.array(
         [[np.inf] * 3, [np.nan, 1, 1], [-1e30] * 3, [-0.0] * 3, [0.5] * 3, [1e30] * 3], np.float32
     )

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from nau_py.raster.device import device
-from nau_py.raster.tolerant_glsl import adapt
+from nau_py.raster.device import get_device
+from nau_py.raster.tolerant_glsl import adapt_stages
 
 VERTEX = "#version 330\nin vec4 position;\n{}void main() {{ {} gl_Position = position; }}\n"
 FRAGMENT = "#version {}\n{}out vec4 colour;\nvoid main() {{ colour = {}; }}\n"
@@ -62,9 +62,9 @@ CASES = {
 @pytest.mark.parametrize("name", CASES)
 def test_what_a_strict_driver_rejects_is_adapted(name: str) -> None:
     vertex, fragment, said = CASES[name]
-    texts, notes = adapt({"vs": vertex, "ps": fragment})
+    texts, notes = adapt_stages({"vs": vertex, "ps": fragment})
     assert any(said in note for note in notes), notes
-    device().ctx.program(vertex_shader=texts["vs"], fragment_shader=texts["ps"])
+    get_device().ctx.program(vertex_shader=texts["vs"], fragment_shader=texts["ps"])
     for stage, text in (("vs", vertex), ("ps", fragment)):
         assert texts[stage].count("\n") == text.count("\n")  # errors keep their lines
 
@@ -72,12 +72,12 @@ def test_what_a_strict_driver_rejects_is_adapted(name: str) -> None:
 def test_right_glsl_is_left_alone() -> None:
     vertex = VERTEX.format("out vec3 eye;\n", "eye = vec3(1);")
     fragment = FRAGMENT.format(330, "in vec3 eye; // input = {\n", "vec4(eye, 1)")
-    texts, notes = adapt({"vs": vertex, "ps": fragment})
+    texts, notes = adapt_stages({"vs": vertex, "ps": fragment})
     assert notes == []
     assert texts == {"vs": vertex, "ps": fragment}
 
 
 def test_comments_do_not_count() -> None:
     fragment = FRAGMENT.format(330, "/* uniform vec4 input; = { */\n", "vec4(1)")
-    assert adapt({"ps": fragment})[1] == []
-    assert np.array(fragment) == adapt({"ps": fragment})[0]["ps"]
+    assert adapt_stages({"ps": fragment})[1] == []
+    assert np.array(fragment) == adapt_stages({"ps": fragment})[0]["ps"]

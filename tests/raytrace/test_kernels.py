@@ -91,15 +91,15 @@ def test_sobol_points_fill_every_elementary_interval(count: int) -> None:
 @pytest.mark.parametrize("nearest", [True, False])
 def test_textures_agree_with_opengl(folder: Folder, wrap: str, nearest: bool) -> None:
     """The same image, coordinates and sampler through the driver's own texture unit."""
-    from nau_py.raster.device import device
+    from nau_py.raster.device import get_device
     from nau_py.raster.gl import GL
     from nau_py.raster.samplers import Samplers
-    from nau_py.raster.textures import from_image
+    from nau_py.raster.textures import make_image_texture
 
     rng = np.random.default_rng(5)
     texels = rng.integers(0, 256, (5, 7, 4), dtype=np.uint8)
     uv = rng.uniform(-2, 3, (64 * 64, 2)).astype(np.float32)
-    ctx = device().ctx
+    ctx = get_device().ctx
     program = ctx.compute_shader("""#version 430
         layout(local_size_x = 64) in;
         layout(std430, binding = 0) buffer In { vec2 uv[]; };
@@ -107,7 +107,7 @@ def test_textures_agree_with_opengl(folder: Folder, wrap: str, nearest: bool) ->
         uniform sampler2D t;
         void main() { uint i = gl_GlobalInvocationID.x; rgba[i] = textureLod(t, uv[i], 0.0); }
     """)
-    texture = from_image(texels, mipmap=False)
+    texture = make_image_texture(texels, mipmap=False)
     filter_ = ("NEAREST",) if nearest else ("LINEAR",)
     border = (0.25, 0.5, 0.75, 1.0)
     sampler = Samplers().get(

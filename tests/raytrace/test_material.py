@@ -7,7 +7,7 @@ import pytest
 
 import nau_py
 from nau_py.model.raytrace import RaytracePass
-from nau_py.raster.hits import without_declarations
+from nau_py.raster.hits import remove_declarations
 from tests.conftest import PROJECTS, ROOT, Folder
 from tests.projects.test_demos import materials_seen
 
@@ -187,7 +187,7 @@ def test_plaza_by_its_own_programs(folder: Folder) -> None:
 
 def test_declarations_are_taken_out() -> None:
     text = "uniform mat4 a, b;\nuniform vec4 c; // uniform\nuniform highp mat3 n;\nin vec3 b2;"
-    found, types = without_declarations(text, {"b", "c", "n"})
+    found, types = remove_declarations(text, {"b", "c", "n"})
     assert types == {"b": "mat4", "c": "vec4", "n": "mat3"}
     assert found == "uniform mat4 a;\n // uniform\n\nin vec3 b2;"
 

@@ -96,7 +96,7 @@ class Resources:
 
     def packed(self, node: RayVariable, context: Any) -> bytes:
         """The value of a parameter or variable."""
-        from nau_py.raster.semantics import resolve
+        from nau_py.raster.semantics import resolve_source
 
         type_, name, component = node.type or "", node.context or "CURRENT", node.component or ""
         if type_ == "TEXTURE" and component == "ID":
@@ -106,7 +106,7 @@ class Resources:
             return struct.pack("<Q", self.memory(name))
         set_ = self.session.project.registry.get(type_)
         attribute = set_.get(component) if set_ is not None else None
-        value = resolve(context, type_, name, component, node.id or 0)
+        value = resolve_source(context, type_, name, component, node.id or 0)
         samples = self.session.options.samples
         if (type_, component) == ("PASS", "RAYS_PER_PIXEL") and samples:
             value = np.array([samples])

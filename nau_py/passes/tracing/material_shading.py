@@ -12,7 +12,7 @@ from nau_py.raytrace.tracing.main_thread import MainThread
 from nau_py.scene.mesh import F32, SceneObject
 
 if TYPE_CHECKING:
-    from nau_py.raster.semantics import DrawContext
+    from nau_py.raster.draw_context import DrawContext
     from nau_py.scene.mapping import PassMaterials
 
 

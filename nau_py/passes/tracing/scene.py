@@ -13,13 +13,13 @@ from nau_py.passes.frame import FrameContext, View
 from nau_py.passes.tracing.effects import EffectChoice, choose_effects
 from nau_py.passes.tracing.state import TracingState
 from nau_py.passes.tracing.textures import RayInputs
-from nau_py.raster.semantics import resolve
+from nau_py.raster.semantics import resolve_source
 from nau_py.raytrace.tracing.materials import TracedLight, TracedMaterial
 from nau_py.raytrace.tracing.scene_tables import TracedScene, TraceSettings
 from nau_py.scene.material import RenderMaterial
 
 if TYPE_CHECKING:
-    from nau_py.raster.semantics import DrawContext
+    from nau_py.raster.draw_context import DrawContext
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +142,7 @@ def _resolve_variables(nodes: list[RayVariable], context: DrawContext) -> dict[s
     values: dict[str, NDArray[Any]] = {}
     for node in nodes:
         if node.name and node.type and node.component:
-            value = resolve(
+            value = resolve_source(
                 context, node.type, node.context or "CURRENT", node.component, node.id or 0
             )
             if value is not None:

@@ -19,7 +19,7 @@ LONGEST_STRING = 4096
 """Upper bound in bytes; with a longer name the file is not an NBO."""
 
 
-class _Reader:
+class _NboReader:
     """A position in the bytes of a file, and the values that NBO files hold."""
 
     def __init__(self, data: bytes) -> None:
@@ -68,7 +68,7 @@ def load_nbo(path: Path) -> Model:
     Raises :class:`~nau_py.scene.readers.model_error.ModelError`.
     """
     try:
-        reader = _Reader(path.read_bytes())
+        reader = _NboReader(path.read_bytes())
     except OSError as problem:
         raise ModelError(str(problem)) from None
     materials = [_read_material(reader, path) for _ in range(reader.u32())]
@@ -84,7 +84,7 @@ def load_nbo(path: Path) -> Model:
     return objects, materials
 
 
-def _read_material(reader: _Reader, path: Path) -> ModelMaterial:
+def _read_material(reader: _NboReader, path: Path) -> ModelMaterial:
     made = ModelMaterial(reader.string())
     for name in ("AMBIENT", "SPECULAR", "DIFFUSE", "EMISSION"):
         made.colours[name] = tuple(float(v) for v in reader.floats(4))
@@ -96,7 +96,7 @@ def _read_material(reader: _Reader, path: Path) -> ModelMaterial:
     return made
 
 
-def _read_objects(reader: _Reader) -> list[SceneObject]:
+def _read_objects(reader: _NboReader) -> list[SceneObject]:
     found: list[SceneObject] = []
     meshes: dict[str, Mesh] = {}
     for _ in range(reader.u32()):
@@ -116,7 +116,7 @@ def _read_objects(reader: _Reader) -> list[SceneObject]:
     return found
 
 
-def _read_node(reader: _Reader, found: list[SceneObject]) -> None:
+def _read_node(reader: _NboReader, found: list[SceneObject]) -> None:
     reader.floats(12)
     for _ in range(reader.u32()):
         reader.string()
