@@ -56,7 +56,7 @@ def lint(
     fix: Annotated[bool, typer.Option(help="Apply the safe fixes; report what is left.")] = False,
 ) -> None:
     """Check projects: exit status 1 where one has an error."""
-    from nau_py.diagnostics.reporters import to_json, to_sarif, to_text, worst
+    from nau_py.diagnostics.reporters import must_fail, to_json, to_sarif, to_text
     from nau_py.version import __version__
 
     files = collect(paths)
@@ -69,7 +69,7 @@ def lint(
         sys.stdout.write(to_sarif(found, __version__))
     else:
         sys.stdout.write(to_text(found, sources))
-    if worst(found, strict):
+    if must_fail(found, strict):
         raise typer.Exit(FAILED)
 
 
@@ -89,7 +89,7 @@ def _check(files: list[Path], models: bool) -> tuple[list[Diagnostic], dict[str,
 
 def _fix(found: list[Diagnostic]) -> int:
     """Apply the safe fixes; returns how many files changed. Says on stderr what was done."""
-    from nau_py.diagnostics.reporters import shown_path
+    from nau_py.diagnostics.reporters import format_path
     from nau_py.syntax.edit import plan_fixes
 
     safe = [next((f for f in d.fixes if f.safe), None) for d in found]
@@ -106,7 +106,7 @@ def _fix(found: list[Diagnostic]) -> int:
         where = fix.changes[0].location
         if str(Path(where.file)) not in written:
             continue
-        place = Location(shown_path(where.file), where.line, where.column)
+        place = Location(format_path(where.file), where.line, where.column)
         sys.stderr.write(f"{place}: fixed: '{fix.changes[0].old}': {fix.title}\n")
     return len(written)
 

@@ -15,7 +15,7 @@ from nau_py.diagnostics.location import Location
 _TAB = 4
 
 
-def shown_path(file: str) -> str:
+def format_path(file: str) -> str:
     """Return a path relative to the working directory if it is below it."""
     try:
         return str(Path(file).resolve().relative_to(Path.cwd()))
@@ -39,10 +39,10 @@ def _excerpt(location: Location, sources: Mapping[str, str]) -> list[str]:
     return [number + raw.expandtabs(_TAB).rstrip(), " " * (len(number) + len(before)) + "^"]
 
 
-def text_lines(diagnostic: Diagnostic, sources: Mapping[str, str]) -> list[str]:
+def format_lines(diagnostic: Diagnostic, sources: Mapping[str, str]) -> list[str]:
     """Write ``file:line:col: severity[rule]: message``, the source line, and a caret."""
     where = diagnostic.location
-    place = Location(shown_path(where.file), where.line, where.column) if where.file else where
+    place = Location(format_path(where.file), where.line, where.column) if where.file else where
     head = f"{place}: " if where.file else ""
     first = f"{head}{diagnostic.severity}[{diagnostic.rule}]: {diagnostic.message}"
     return [first, *_excerpt(where, sources)]
@@ -50,12 +50,12 @@ def text_lines(diagnostic: Diagnostic, sources: Mapping[str, str]) -> list[str]:
 
 def to_text(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str]) -> str:
     """Write all findings as text, one after the other."""
-    return "".join(line + "\n" for d in diagnostics for line in text_lines(d, sources))
+    return "".join(line + "\n" for d in diagnostics for line in format_lines(d, sources))
 
 
 def _place(location: Location) -> dict[str, Any]:
     return {
-        "file": shown_path(location.file),
+        "file": format_path(location.file),
         "line": location.line,
         "column": location.column,
     }
@@ -77,7 +77,7 @@ def to_json(diagnostics: Iterable[Diagnostic]) -> str:
 
 
 def _uri(file: str) -> str:
-    path = Path(shown_path(file))
+    path = Path(format_path(file))
     return path.as_uri() if path.is_absolute() else quote(path.as_posix())
 
 
@@ -139,7 +139,7 @@ def to_sarif(diagnostics: Iterable[Diagnostic], version: str) -> str:
     return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
 
 
-def worst(diagnostics: Iterable[Diagnostic], strict: bool) -> bool:
+def must_fail(diagnostics: Iterable[Diagnostic], strict: bool) -> bool:
     """Return True if a run must fail: an error, or with ``strict`` a warning."""
     bad = {Severity.ERROR, Severity.WARNING} if strict else {Severity.ERROR}
     return any(d.severity in bad for d in diagnostics)

@@ -152,7 +152,7 @@ class Binder:
         return True
 
 
-def unbind(node: Node, tag: str, registry: Registry) -> Element:
+def make_element(node: Node, tag: str, registry: Registry) -> Element:
     """Write a node as an element, which :meth:`Binder.bind` reads back as an equal node."""
     element = Element(tag, location=node.location)
     schema = schema_of(type(node))
@@ -180,7 +180,7 @@ def _unbind_settings(node: Node, part: SettingsField, registry: Registry) -> lis
 
 
 def _unbind_children(node: Node, part: ChildField, registry: Registry) -> list[Element]:
-    written = [unbind(item, part.tag_of(item), registry) for item in part.of(node)]
+    written = [make_element(item, part.tag_of(item), registry) for item in part.of(node)]
     if not part.wrapper:
         return written
     rest = node.partial.get(part.wrapper)

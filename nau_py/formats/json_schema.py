@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from nau_py.formats.settings import keys_of
+from nau_py.formats.settings import list_keys
 from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import Registry
 from nau_py.model.library import MaterialLibrary
@@ -130,7 +130,7 @@ class _Definitions:
         return [(attribute.name, self._setting(attribute)) for attribute in writable]
 
     def _setting(self, attribute: Attribute) -> Schema:
-        keys = keys_of(attribute)
+        keys = list_keys(attribute)
         one = _scalar(attribute.values if len(keys) == 1 else (), "")
         by_key: Schema = {"type": "object", "properties": dict.fromkeys(keys, _SCALAR)}
         forms: list[Schema] = [one, by_key, {"type": "array", "items": by_key}]

@@ -10,7 +10,7 @@ from nau_py.diagnostics.location import Location
 from nau_py.diagnostics.problem import Problem, ProblemKind
 from nau_py.formats.bind import Binder
 from nau_py.formats.settings import parse_setting
-from nau_py.formats.upgrade import upgrade
+from nau_py.formats.upgrade import upgrade_dialect
 from nau_py.formats.yaml import YamlReader
 from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import Registry
@@ -87,7 +87,7 @@ class Reader:
                 Problem(ProblemKind.SYNTAX, where, detail="elements are nested too deeply")
             )
             return None
-        return upgrade(root, self.problems)
+        return upgrade_dialect(root, self.problems)
 
     def _yaml_user_attributes(self, data: object) -> None:
         """Declare user attributes first: they decide which keys of the rest are settings."""

@@ -23,7 +23,7 @@ _KEYS: tuple[tuple[str, ...], ...] = (
 )
 
 
-def spellings_of(attribute: Attribute) -> list[tuple[str, ...]]:
+def list_spellings(attribute: Attribute) -> list[tuple[str, ...]]:
     """List for each component the XML attributes that may hold it."""
     kind = attribute.type
     if kind is DataType.STRING:
@@ -44,9 +44,9 @@ def spellings_of(attribute: Attribute) -> list[tuple[str, ...]]:
     return spellings
 
 
-def keys_of(attribute: Attribute) -> list[str]:
+def list_keys(attribute: Attribute) -> list[str]:
     """List the XML attributes to write a value of ``attribute`` with, one a component."""
-    spellings = spellings_of(attribute)
+    spellings = list_spellings(attribute)
     if attribute.keys == "rgba":
         return [keys[1] if len(keys) > 1 else keys[0] for keys in spellings]
     if attribute.keys == "size":
@@ -95,7 +95,7 @@ def parse_setting(
         return None
     parts: list[Scalar] = []
     used = set()
-    for index, keys in enumerate(spellings_of(attribute)):
+    for index, keys in enumerate(list_spellings(attribute)):
         key = next((k for k in keys if k in element.attributes), None)
         if key is None:
             if index >= attribute.type.required_components:
@@ -131,5 +131,5 @@ def parse_inline(
 
 def write_setting(tag: str, setting: Setting, attribute: Attribute) -> Element:
     """Write the child tag that :func:`parse_setting` reads back."""
-    pairs = zip(keys_of(attribute), setting.parts)
+    pairs = zip(list_keys(attribute), setting.parts)
     return Element(tag, {key: format_scalar(part) for key, part in pairs} | setting.extra)

@@ -19,7 +19,7 @@ _WRAPPERS = {
 }
 
 
-def upgrade(root: Element, problems: list[Problem]) -> Element:
+def upgrade_dialect(root: Element, problems: list[Problem]) -> Element:
     """Replace old elements in the tree of ``root``, in place; each kind is reported once a pass."""
     for element in root.walk():
         if element.tag == "pass":

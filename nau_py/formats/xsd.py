@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from xml.sax.saxutils import quoteattr
 
-from nau_py.formats.settings import keys_of
+from nau_py.formats.settings import list_keys
 from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import Registry
 from nau_py.model.library import MaterialLibrary
@@ -107,7 +107,7 @@ class _Types:
         yield part.tag, _element(part.tag, name, part.doc or schema_of(part.cls).doc)
 
     def _setting(self, attribute: Attribute) -> str:
-        keys = keys_of(attribute)
+        keys = list_keys(attribute)
         values = attribute.values if len(keys) == 1 else ()
         inner = "".join(
             f"<xs:attribute name={quoteattr(key)}"

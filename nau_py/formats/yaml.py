@@ -11,7 +11,7 @@ from typing import Any
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from nau_py.diagnostics.location import Location
-from nau_py.formats.settings import keys_of
+from nau_py.formats.settings import list_keys
 from nau_py.model.attributes import Registry
 from nau_py.model.node import Node
 from nau_py.model.schema import ChildField, NodeSchema, schema_of
@@ -80,7 +80,7 @@ class YamlReader:
         elif part is not None and (part.wrapper or not part.mixed):
             element.children += self._part(key, value, part, where)
         elif (found := schema.setting(key, self.registry)) is not None:
-            element.children += self._settings(key, value, keys_of(found[1]), where)
+            element.children += self._settings(key, value, list_keys(found[1]), where)
         elif scalar:
             self._set(element, data, key, value)
         else:
@@ -208,7 +208,7 @@ def _add_child(data: CommentedMap, child: Element, schema: NodeSchema, registry:
     if part is None:
         found = schema.setting(tag, registry)
         if found is not None:
-            _add_setting(data, child, keys_of(found[1]), found[1].type)
+            _add_setting(data, child, list_keys(found[1]), found[1].type)
             return
     elif part.wrapper:
         if tag in data:

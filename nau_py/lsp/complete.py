@@ -29,7 +29,7 @@ from nau_py.model.passes import Pass
 from nau_py.model.physics import PhysicsLibrary
 from nau_py.model.project import ProjectFile
 from nau_py.model.raytrace import BUILTIN, Program, RayMaterial, RaytracePass, RayTypePrograms
-from nau_py.model.references import CONTEXTS, known_names
+from nau_py.model.references import CONTEXTS, list_known_names
 from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
 from nau_py.raytrace.programs.source import stand_in
 from nau_py.scene.names import list_default_materials
@@ -203,7 +203,7 @@ def _propose_entry_values(
 def _propose_names(
     grammar: Grammar, attr: Attr, key: str, given: dict[str, str]
 ) -> Iterator[Completion]:
-    known = [n for n in known_names(grammar.names, attr.ref) if not ("__" in n or "#" in n)]
+    known = [n for n in list_known_names(grammar.names, attr.ref) if not ("__" in n or "#" in n)]
     if not any("::" in name for name in known):
         for name in dict.fromkeys(known):
             yield Completion(name, name, "name", attr.ref)
@@ -256,7 +256,7 @@ def _propose_by_siblings(
     elif key == "context":
         yield Completion("CURRENT", "CURRENT", "value")
         kind = CONTEXTS.get(given.get("type", ""))
-        for name in known_names(project, kind) if kind else []:
+        for name in list_known_names(project, kind) if kind else []:
             yield Completion(name, name, "name", kind or "")
     elif key == "type" and isinstance(place, Inside) and "component" in place.cls.model_fields:
         for name in OBJECT_TYPES:

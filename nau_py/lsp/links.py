@@ -16,7 +16,7 @@ from nau_py.model.node import Node
 from nau_py.model.raytrace import BUILTIN, Program
 from nau_py.model.schema import AttributeField, schema_of
 from nau_py.model.shader import STAGES, Shader
-from nau_py.model.walk import nodes
+from nau_py.model.walk import walk_nodes
 from nau_py.process.paths import resolve
 from nau_py.raytrace.programs.source import stand_in, strip_decoration
 
@@ -42,7 +42,7 @@ def find_link(symbols: Symbols, file: str, offset: int) -> SourceLink | None:
 
 
 def _collect_links(project: Project, file: str) -> Iterator[SourceLink]:
-    for node in nodes(project):
+    for node in walk_nodes(project):
         if node.location.file != file:
             continue
         if isinstance(node, Program) and node.file and node.proc:
@@ -134,7 +134,7 @@ def find_bindings(project: Project, path: Path, text: str, offset: int) -> list[
     program files: the sources of a uniform, the bindings of a procedure."""
     word = next((m[0] for m in _WORD.finditer(text) if m.start() <= offset <= m.end()), "")
     found: list[Location] = []
-    for node in nodes(project):
+    for node in walk_nodes(project):
         if isinstance(node, Material) and node.shader is not None:
             shader = _find_shader(project, node)
             if shader is not None and path in [f.resolve() for f in list_shader_files(shader)]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from nau_py.formats.settings import keys_of
+from nau_py.formats.settings import list_keys
 from nau_py.model.attribute import Attribute
 from nau_py.model.attributes import Registry
 from nau_py.model.node import Attr, Node
@@ -156,7 +156,7 @@ def attributes(place: Place, registry: Registry) -> list[Entry]:
         return []
     if isinstance(place, Leaf):
         attribute = place.attribute
-        keys = keys_of(attribute)
+        keys = list_keys(attribute)
         one = _attr_of(attribute) if len(keys) == 1 else Attr(DataType.FLOAT, constant=True)
         return [Entry(key, attribute.doc, True, one, attribute) for key in keys]
     schema = schema_of(place.cls)

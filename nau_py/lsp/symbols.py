@@ -18,9 +18,9 @@ from nau_py.model.node import Node
 from nau_py.model.raytrace import RayMaterial, RaytracePass, RayVariable
 from nau_py.model.references import (
     CONTEXTS,
-    known_names,
-    owned_nodes,
-    qualified_reference,
+    list_known_names,
+    qualify_reference,
+    walk_owned_nodes,
 )
 from nau_py.model.schema import AttributeField, SettingsField, schema_of
 from nau_py.syntax.document import Document
@@ -135,9 +135,9 @@ def _collect_definitions(project: Project) -> Iterator[Symbol]:
 
 
 def _collect_references(project: Project) -> Iterator[Symbol]:
-    buffers = set(known_names(project, "buffer"))
+    buffers = set(list_known_names(project, "buffer"))
     scenes = {scene.name for scene in project.assets.scenes}
-    for node, library in owned_nodes(project):
+    for node, library in walk_owned_nodes(project):
         schema = schema_of(type(node))
         for attribute in schema.attributes:
             for symbol in _attribute_symbols(node, attribute, library, buffers):
@@ -160,7 +160,7 @@ def _attribute_symbols(
         yield Symbol("constant", value, value, where)
     if not attribute.ref or attribute.ref == "object type":
         return
-    name = qualified_reference(node, attribute, library, value, buffers)
+    name = qualify_reference(node, attribute, library, value, buffers)
     head, _, tail = value.rpartition("::")
     yield Symbol(attribute.ref, name, tail, where)
     if head:

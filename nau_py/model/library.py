@@ -47,6 +47,6 @@ class MaterialLibrary(Node):
         return self.location.file
 
 
-def qualified(name: str, library: str) -> str:
+def qualify_name(name: str, library: str) -> str:
     """Return ``lib::name``. A name that contains ``::`` stays as it is."""
     return name if "::" in name else f"{library}::{name}"

@@ -128,7 +128,7 @@ class InjectionMap(Node):
     ] = Field(default_factory=list)
 
 
-def matches(pattern: str, name: str) -> bool:
+def match_pattern(pattern: str, name: str) -> bool:
     """Match Nau's pattern: an exact name, or a prefix followed by a final ``*``."""
     if pattern.endswith("*"):
         return name.startswith(pattern[:-1])

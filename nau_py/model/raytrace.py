@@ -10,7 +10,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from nau_py.model.maps import matches
+from nau_py.model.maps import match_pattern
 from nau_py.model.node import Attr, Child, Items, Node
 from nau_py.model.passes import Pass
 from nau_py.model.values import DataType
@@ -195,7 +195,7 @@ class RaytracePass(Pass):
                 return node
         prefixed = [n for n in self.rtMaterialMap if n.to and n.to.endswith("*")]
         for node in sorted(prefixed, key=lambda n: (n.to or "").encode()):
-            if any(matches(node.to or "", name) for name in known):
+            if any(match_pattern(node.to or "", name) for name in known):
                 return node
         return self.rtDefaultMaterial
 

@@ -8,7 +8,7 @@ from nau_py.model.attributes import OBJECT_TYPES
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
 from nau_py.model.node import Attr, Node
-from nau_py.model.walk import nodes
+from nau_py.model.walk import walk_nodes
 
 PLAIN_KINDS = (
     "scene", "camera", "light", "viewport", "pipeline", "library", "pass", "object type",
@@ -19,14 +19,14 @@ CONTEXTS = {"CAMERA": "camera", "LIGHT": "light", "VIEWPORT": "viewport", "SCENE
 """Object types whose ``context`` names an object, with the kind of that name."""
 
 
-def owned_nodes(project: Project) -> Iterator[tuple[Node, str]]:
+def walk_owned_nodes(project: Project) -> Iterator[tuple[Node, str]]:
     """Yield every node with the name of its library; an empty name in the project file."""
     own = {id(n): lib.name or "" for lib in project.libraries[1:] for n in lib.walk()}
-    for node in nodes(project):
+    for node in walk_nodes(project):
         yield node, own.get(id(node), "")
 
 
-def qualified_reference(
+def qualify_reference(
     node: Node, attribute: Attr, library: str, value: str, buffers: Container[str] = ()
 ) -> str:
     """Qualify the name that an attribute of ``node`` refers to: ``lib::name``, or the plain name
@@ -60,12 +60,12 @@ def _light_cameras(project: Project) -> list[str]:
     ]
 
 
-def pass_libraries(project: Project) -> list[str]:
+def list_pass_libraries(project: Project) -> list[str]:
     """List the libraries that passes make for their own materials."""
     return [f"{pl.name}#{p.name}" for pl in project.pipelines for p in pl.passes]
 
 
-def known_names(project: Project, kind: str) -> list[str]:
+def list_known_names(project: Project, kind: str) -> list[str]:
     """List every qualified name that a reference of a kind can have."""
     if kind == "object type":
         return list(OBJECT_TYPES)
@@ -75,5 +75,5 @@ def known_names(project: Project, kind: str) -> list[str]:
     if kind in ("camera", "scene"):  # a camera is also a scene that shows its frustum
         known += _light_cameras(project)
     if kind == "library":
-        known += pass_libraries(project)
+        known += list_pass_libraries(project)
     return known

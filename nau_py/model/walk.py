@@ -9,14 +9,14 @@ from nau_py.model.linked import Project
 from nau_py.model.node import Node
 
 
-def own_libraries(project: Project) -> list[MaterialLibrary]:
+def list_own_libraries(project: Project) -> list[MaterialLibrary]:
     """List every library except the built-in one."""
     return project.libraries[1:]
 
 
-def nodes(project: Project) -> Iterator[Node]:
+def walk_nodes(project: Project) -> Iterator[Node]:
     """Yield every node of the project file and of its libraries, parents first."""
     if project.file.tag:
         yield from project.file.walk()
-    for library in [*own_libraries(project), *project.physics]:
+    for library in [*list_own_libraries(project), *project.physics]:
         yield from library.walk()

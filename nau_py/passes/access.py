@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from nau_py.graph.contract import Access
 from nau_py.graph.resource import WINDOW, Resource
-from nau_py.model.library import DEFAULT_LIBRARY, qualified
+from nau_py.model.library import DEFAULT_LIBRARY, qualify_name
 from nau_py.model.linked import Project
 from nau_py.model.maps import InjectionMap
 from nau_py.model.material import BufferUnit
@@ -13,12 +13,12 @@ from nau_py.model.passes import Pass, ProcessBuffer, ProcessTexture
 
 def texture(name: str | None, library: str | None) -> Resource:
     """Return the texture ``name`` of ``library``, of the default library where it is None."""
-    return Resource("texture", qualified(name or "", library or DEFAULT_LIBRARY))
+    return Resource("texture", qualify_name(name or "", library or DEFAULT_LIBRARY))
 
 
 def buffer(name: str | None, library: str | None) -> Resource:
     """Return the buffer ``name`` of ``library``, of the default library where it is None."""
-    return Resource("buffer", qualified(name or "", library or DEFAULT_LIBRARY))
+    return Resource("buffer", qualify_name(name or "", library or DEFAULT_LIBRARY))
 
 
 def buffer_of(project: Project, unit: BufferUnit, library: str) -> Resource:

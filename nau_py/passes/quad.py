@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Annotated
 
 from nau_py.graph.contract import Access
-from nau_py.model.library import DEFAULT_LIBRARY, qualified
+from nau_py.model.library import DEFAULT_LIBRARY, qualify_name
 from nau_py.model.linked import Project
 from nau_py.model.node import Attr, Child, Node
 from nau_py.model.pass_classes import MaterialReference
@@ -69,7 +69,7 @@ class QuadClass(PassClass):
         )
         if isinstance(pass_, QuadPass) and pass_.texture is not None:
             library = pass_.texture.fromLibrary or DEFAULT_LIBRARY
-            name = qualified(pass_.texture.name or "", library)
+            name = qualify_name(pass_.texture.name or "", library)
             return replace(plain, textures={0: TextureBinding(name)})
         return frame.session.pass_materials(pass_)[QUAD_MATERIAL] or plain
 

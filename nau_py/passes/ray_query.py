@@ -11,7 +11,7 @@ from nau_py.diagnostics.diagnostic import error
 from nau_py.diagnostics.errors import NauError
 from nau_py.graph.contract import Access
 from nau_py.model.attribute import number
-from nau_py.model.library import qualified
+from nau_py.model.library import qualify_name
 from nau_py.model.linked import Project
 from nau_py.model.node import Attr, Child, Node
 from nau_py.model.passes import Pass, SceneReference
@@ -129,7 +129,7 @@ class RayQueryState(Stateless):
 
 
 def _storage(pass_: RayQueryPass, node: RayBuffer, frame: FrameContext) -> Any:
-    name = qualified(node.buffer or "", node.fromLibrary or "")
+    name = qualify_name(node.buffer or "", node.fromLibrary or "")
     found = frame.session.resources.buffer(name)
     if found is None:
         message = f"pass '{pass_.name}': buffer '{name}' has no size"

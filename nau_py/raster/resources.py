@@ -10,7 +10,7 @@ import numpy as np
 from nau_py.diagnostics.diagnostic import Diagnostic, error, warning
 from nau_py.diagnostics.errors import NauError, ProjectError, ShaderError
 from nau_py.diagnostics.location import Location
-from nau_py.model.attributes.texture import channels
+from nau_py.model.attributes.texture import count_channels
 from nau_py.model.buffer import Buffer
 from nau_py.model.linked import Project
 from nau_py.model.physics import PhysicsMaterial
@@ -199,7 +199,7 @@ class Resources:
             layers = max(number("LAYERS"), 1)
             deep = depth if depth > 1 else 0
             return make_texture(fmt, width, height, levels, layers, deep, samples)
-        wide = channels(fmt)
+        wide = count_channels(fmt)
         texture = make_texture({1: "R32F", 2: "RG32F", 4: "RGBA32F"}[wide], width, height, levels)
         random = np.random.default_rng(0)
         shape = (height, width, wide)

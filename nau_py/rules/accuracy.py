@@ -74,7 +74,7 @@ def _pipeline(project: Project, node: Accuracy) -> Pipeline | None:
 
 
 @check
-def accuracy(context: LintContext) -> Iterator[Diagnostic]:
+def check_accuracy(context: LintContext) -> Iterator[Diagnostic]:
     """Check the knobs of ``<accuracy>`` and their values."""
     node = context.project.file.accuracy
     pipeline = _pipeline(context.project, node) if node is not None else None
@@ -113,7 +113,7 @@ def accuracy(context: LintContext) -> Iterator[Diagnostic]:
 
 
 @check
-def effects(context: LintContext) -> Iterator[Diagnostic]:
+def check_effects(context: LintContext) -> Iterator[Diagnostic]:
     """Check the names in ``<effects>``."""
     node = context.project.file.effects
     if node is None or node.simulate is None:

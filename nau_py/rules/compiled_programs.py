@@ -109,7 +109,7 @@ T024 = rule(
 
 
 @check
-def compiled_programs(context: LintContext) -> Iterator[Diagnostic]:
+def check_compiled_programs(context: LintContext) -> Iterator[Diagnostic]:
     """Check the procedures of compiled files that are launched, or that have no Python file."""
     folder = context.project.folder
     for _, pass_ in raytrace_passes(context.project):

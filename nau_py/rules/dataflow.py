@@ -12,7 +12,7 @@ from nau_py.diagnostics.location import Location
 from nau_py.graph.contract import Access
 from nau_py.graph.plan import Plan, make_plan
 from nau_py.graph.resource import Resource
-from nau_py.model.attributes.texture import channels
+from nau_py.model.attributes.texture import count_channels
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass
 from nau_py.model.raytrace import RaytracePass
@@ -228,7 +228,7 @@ def _inputs(
                 )
         short = (source.texture or "").split("::")[-1]
         attachment = next((c for c in node.colors if c.name == short), None)
-        count = channels(attachment.internalFormat or "RGBA") if attachment else 1
+        count = count_channels(attachment.internalFormat or "RGBA") if attachment else 1
         if source.mask in ("x", "y", "z", "w") and "xyzw".index(source.mask) >= count:
             yield D006.at(
                 source.where("mask"),

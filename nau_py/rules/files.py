@@ -11,7 +11,7 @@ from nau_py.diagnostics.diagnostic import Change, Diagnostic, Fix, Part
 from nau_py.diagnostics.location import Location
 from nau_py.diagnostics.suggest import format_names
 from nau_py.model.schema import schema_of
-from nau_py.model.walk import nodes
+from nau_py.model.walk import walk_nodes
 from nau_py.process.paths import resolve, similar
 from nau_py.rules.registry import LintContext, check
 
@@ -51,9 +51,9 @@ _SOFT = {"texture": F004}
 
 
 @check
-def files(context: LintContext) -> Iterator[Diagnostic]:
+def check_files(context: LintContext) -> Iterator[Diagnostic]:
     """Check every attribute that is a path, except those of ray programs (T)."""
-    for node in nodes(context.project):
+    for node in walk_nodes(context.project):
         for attribute in schema_of(type(node)).attributes:
             value = attribute.of(node)
             if attribute.file in ("", "program") or not isinstance(value, str):

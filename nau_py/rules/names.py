@@ -8,7 +8,7 @@ from nau_py.diagnostics.catalogue import ERROR, WARNING, Rule, rule
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.model.library import MaterialLibrary
 from nau_py.model.node import Node
-from nau_py.model.walk import own_libraries
+from nau_py.model.walk import list_own_libraries
 from nau_py.rules.registry import LintContext, check
 
 N001 = rule(
@@ -46,7 +46,7 @@ def _duplicates(kind: str, nodes: Iterable[Node], found: Rule) -> Iterator[Diagn
 
 
 @check
-def project_names(context: LintContext) -> Iterator[Diagnostic]:
+def check_project_names(context: LintContext) -> Iterator[Diagnostic]:
     """Check cameras, viewports and pipelines; lights, scenes and passes, which Nau merges."""
     project = context.project
     assets = project.assets
@@ -71,9 +71,9 @@ def _attachments(libraries: list[MaterialLibrary]) -> list[Node]:
 
 
 @check
-def library_names(context: LintContext) -> Iterator[Diagnostic]:
+def check_library_names(context: LintContext) -> Iterator[Diagnostic]:
     """Check the names in libraries. Libraries of one name share a name space."""
-    libraries = own_libraries(context.project)
+    libraries = list_own_libraries(context.project)
     for name in dict.fromkeys(lib.name for lib in libraries):
         same = [lib for lib in libraries if lib.name == name]
         kinds: dict[str, list[Node]] = {

@@ -82,7 +82,7 @@ def _numbers(project: Project, setting: Setting) -> list[float]:
 
 
 @check
-def cameras(context: LintContext) -> Iterator[Diagnostic]:
+def check_cameras(context: LintContext) -> Iterator[Diagnostic]:
     """Check near planes and lenses."""
     project = context.project
     for camera in project.assets.cameras:
@@ -110,7 +110,7 @@ def cameras(context: LintContext) -> Iterator[Diagnostic]:
 
 
 @check
-def lights(context: LintContext) -> Iterator[Diagnostic]:
+def check_lights(context: LintContext) -> Iterator[Diagnostic]:
     """Check the colours and areas of lights."""
     project = context.project
     for light in project.assets.lights:
@@ -140,7 +140,7 @@ def lights(context: LintContext) -> Iterator[Diagnostic]:
 
 
 @check
-def materials(context: LintContext) -> Iterator[Diagnostic]:
+def check_materials(context: LintContext) -> Iterator[Diagnostic]:
     """Check the colours of library materials, and the energy of fluorescence."""
     project = context.project
     names = [

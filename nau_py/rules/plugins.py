@@ -11,7 +11,7 @@ from nau_py.rules.registry import LintContext, check
 
 
 @check
-def plug_ins(context: LintContext) -> Iterator[Diagnostic]:
+def check_plug_ins(context: LintContext) -> Iterator[Diagnostic]:
     """Load the plug-ins that lint has not loaded yet, and report those that failed."""
     plugins.load_plugins(plugins.READERS)
     plugins.program_files()

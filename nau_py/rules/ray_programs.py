@@ -57,7 +57,7 @@ T006 = rule(
 
 
 @check
-def programs(context: LintContext) -> Iterator[Diagnostic]:
+def check_programs(context: LintContext) -> Iterator[Diagnostic]:
     """Check the file and procedure of every program."""
     for _, pass_ in raytrace_passes(context.project):
         compiled = launches_ptx(pass_, context.project.folder)

@@ -79,7 +79,7 @@ def raytrace_passes(project: Project) -> list[tuple[str, RaytracePass]]:
 
 
 @check
-def one_pass(context: LintContext) -> Iterator[Diagnostic]:
+def check_one_pass(context: LintContext) -> Iterator[Diagnostic]:
     """Check that a project has one raytrace pass."""
     found = raytrace_passes(context.project)
     if len(found) < 2 or context.project.file.raytracePasses == "many":
@@ -96,7 +96,7 @@ def one_pass(context: LintContext) -> Iterator[Diagnostic]:
 
 
 @check
-def masks(context: LintContext) -> Iterator[Diagnostic]:
+def check_masks(context: LintContext) -> Iterator[Diagnostic]:
     """Check that an earlier pass writes the mask."""
     project = context.project
     for pipeline in project.pipelines:
@@ -121,7 +121,7 @@ def masks(context: LintContext) -> Iterator[Diagnostic]:
 
 
 @check
-def completeness(context: LintContext) -> Iterator[Diagnostic]:
+def check_completeness(context: LintContext) -> Iterator[Diagnostic]:
     """Check entry point, render target, outputs and ray types."""
     for _, pass_ in raytrace_passes(context.project):
         if pass_.rtEntryPoint is None or pass_.rtEntryPoint.rayGen is None:

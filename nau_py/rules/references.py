@@ -11,7 +11,7 @@ from nau_py.diagnostics.suggest import format_names, suggest_fix, suggest_name
 from nau_py.model.attributes import OBJECT_TYPES
 from nau_py.model.library import DEFAULT_LIBRARY
 from nau_py.model.linked import Project
-from nau_py.model.maps import matches
+from nau_py.model.maps import match_pattern
 from nau_py.model.material import ValueOf
 from nau_py.model.node import Node
 from nau_py.model.passes import Pass, TargetReference
@@ -19,13 +19,13 @@ from nau_py.model.raytrace import RayVariable
 from nau_py.model.references import (
     CONTEXTS,
     PLAIN_KINDS,
-    known_names,
-    owned_nodes,
-    pass_libraries,
-    qualified_reference,
+    list_known_names,
+    list_pass_libraries,
+    qualify_reference,
+    walk_owned_nodes,
 )
 from nau_py.model.schema import AttributeField, schema_of
-from nau_py.model.walk import nodes
+from nau_py.model.walk import walk_nodes
 from nau_py.rules.registry import LintContext, check
 
 
@@ -106,15 +106,15 @@ class _Names:
 
     def of(self, kind: str) -> list[str]:
         if kind not in self._found:
-            self._found[kind] = known_names(self._project, kind)
+            self._found[kind] = list_known_names(self._project, kind)
         return self._found[kind]
 
 
 @check
-def references(context: LintContext) -> Iterator[Diagnostic]:
+def check_references(context: LintContext) -> Iterator[Diagnostic]:
     """Check every attribute that names something."""
     names = _Names(context.project)
-    for node, library in owned_nodes(context.project):
+    for node, library in walk_owned_nodes(context.project):
         schema = schema_of(type(node))
         for attribute in schema.attributes:
             value = attribute.of(node)
@@ -162,8 +162,8 @@ def _attribute(
     if "::" not in value and given is not None and given not in names.of("library"):
         return  # the library is what is undefined
     buffers = names.of("buffer") if kind == "buffer" else ()
-    wanted = qualified_reference(node, attribute, library, value, buffers)
-    if kind == "material" and wanted.split("::")[0] in pass_libraries(context.project):
+    wanted = qualify_reference(node, attribute, library, value, buffers)
+    if kind == "material" and wanted.split("::")[0] in list_pass_libraries(context.project):
         return
     known = names.of(kind)
     if wanted in known:
@@ -186,11 +186,11 @@ def _attribute(
 
 
 @check
-def components(context: LintContext) -> Iterator[Diagnostic]:
+def check_components(context: LintContext) -> Iterator[Diagnostic]:
     """Check types, components and named contexts of uniform and program values."""
     project = context.project
     names = _Names(project)
-    for node in nodes(project):
+    for node in walk_nodes(project):
         if not isinstance(node, ValueOf | RayVariable) or node.type is None:
             continue
         set_ = project.registry.get(node.type)
@@ -219,7 +219,7 @@ def components(context: LintContext) -> Iterator[Diagnostic]:
 
 
 @check
-def patterns(context: LintContext) -> Iterator[Diagnostic]:
+def check_patterns(context: LintContext) -> Iterator[Diagnostic]:
     """Report maps whose pattern matches no material, if the materials of models are known."""
     if context.materials is None:
         return
@@ -232,7 +232,7 @@ def patterns(context: LintContext) -> Iterator[Diagnostic]:
                 *((m, "fromMaterial", m.fromMaterial) for m in pass_.materialMaps),
             ]
             for node, key, pattern in wanted:
-                if pattern and not any(matches(pattern, name) for name in known):
+                if pattern and not any(match_pattern(pattern, name) for name in known):
                     own = [k for k in known if not k.startswith("__")]
                     yield R018.at(
                         node.where(key),
@@ -243,7 +243,7 @@ def patterns(context: LintContext) -> Iterator[Diagnostic]:
 
 
 @check
-def same_targets(context: LintContext) -> Iterator[Diagnostic]:
+def check_same_targets(context: LintContext) -> Iterator[Diagnostic]:
     """Report ``sameas`` of a pass without a render target."""
     by_name: dict[str | None, Pass] = {}
     for pipeline in context.project.pipelines:

@@ -117,6 +117,6 @@ def _diagnostic(p: Problem) -> Diagnostic:
 
 
 @check
-def problems(context: LintContext) -> Iterator[Diagnostic]:
+def check_problems(context: LintContext) -> Iterator[Diagnostic]:
     """Report every problem of the readers."""
     yield from (_diagnostic(p) for p in context.project.problems)

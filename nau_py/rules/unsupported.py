@@ -9,7 +9,7 @@ from nau_py.diagnostics.catalogue import NOTE, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.model.material import ValueOf
 from nau_py.model.raytrace import RayVariable
-from nau_py.model.walk import nodes
+from nau_py.model.walk import walk_nodes
 from nau_py.rules.registry import LintContext, check
 
 UNSUPPLIED_TYPES = ("SPHERE", "GRID", "PHYSICS_MANAGER", "PHYSICS_MATERIAL")
@@ -43,7 +43,7 @@ L002 = rule(
 
 
 @check
-def endless_pipelines(context: LintContext) -> Iterator[Diagnostic]:
+def check_endless_pipelines(context: LintContext) -> Iterator[Diagnostic]:
     """Report pipelines that never end, so that the next one never runs."""
     pipelines = context.project.file.pipelines
     if pipelines is None or pipelines.mode != "RUN_ALL":
@@ -58,9 +58,9 @@ def endless_pipelines(context: LintContext) -> Iterator[Diagnostic]:
 
 
 @check
-def values(context: LintContext) -> Iterator[Diagnostic]:
+def check_supplied_values(context: LintContext) -> Iterator[Diagnostic]:
     """Report uniforms and parameters of object types without values."""
-    for node in nodes(context.project):
+    for node in walk_nodes(context.project):
         if isinstance(node, ValueOf | RayVariable) and node.type in UNSUPPLIED_TYPES:
             yield L007.at(
                 node.where("type"),
@@ -69,7 +69,7 @@ def values(context: LintContext) -> Iterator[Diagnostic]:
 
 
 @check
-def physics(context: LintContext) -> Iterator[Diagnostic]:
+def check_physics(context: LintContext) -> Iterator[Diagnostic]:
     """Report physics libraries, which are not simulated."""
     for library in context.project.assets.physicsLibs:
         yield L002.at(

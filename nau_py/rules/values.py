@@ -17,7 +17,7 @@ from nau_py.model.raytrace import VERTEX_ATTRIBUTES
 from nau_py.model.scene import BufferGeometry
 from nau_py.model.schema import schema_of
 from nau_py.model.texture import Texture
-from nau_py.model.walk import nodes
+from nau_py.model.walk import walk_nodes
 from nau_py.rules.registry import LintContext, check
 from nau_py.syntax.element import Element
 
@@ -124,9 +124,9 @@ _STRUCTURAL = {
 
 
 @check
-def unknown_things(context: LintContext) -> Iterator[Diagnostic]:
+def check_unknown_names(context: LintContext) -> Iterator[Diagnostic]:
     """Report attributes and elements that the class of a node does not declare."""
-    for node in nodes(context.project):
+    for node in walk_nodes(context.project):
         attributes = schema_of(type(node)).names(context.project.registry)
         for key, value in node.unknown_attributes.items():
             if key in attributes:
@@ -198,9 +198,9 @@ def _left_over(
 
 
 @check
-def attribute_values(context: LintContext) -> Iterator[Diagnostic]:
+def check_attribute_values(context: LintContext) -> Iterator[Diagnostic]:
     """Check required attributes, and values of enumerated ones."""
-    for node in nodes(context.project):
+    for node in walk_nodes(context.project):
         for attribute in schema_of(type(node)).attributes:
             key, value = attribute.name, attribute.of(node)
             if value is None:
@@ -232,9 +232,9 @@ def _constant(project: Project, name: str, what: str, where: Location) -> Iterat
 
 
 @check
-def settings(context: LintContext) -> Iterator[Diagnostic]:
+def check_settings(context: LintContext) -> Iterator[Diagnostic]:
     """Check enums, ranges and constants of child tags and inline attributes."""
-    for node in nodes(context.project):
+    for node in walk_nodes(context.project):
         schema = schema_of(type(node))
         for part in [*schema.settings, *schema.inline]:
             for tag, setting in part.of(node).items():
@@ -277,7 +277,7 @@ def _limits(low: float | None, high: float | None) -> str:
 
 
 @check
-def has_pipelines(context: LintContext) -> Iterator[Diagnostic]:
+def check_pipelines_exist(context: LintContext) -> Iterator[Diagnostic]:
     """Check that a project has a pipeline to run."""
     project = context.project
     if project.file.name is not None and not project.pipelines:

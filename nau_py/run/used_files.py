@@ -9,7 +9,7 @@ from pathlib import Path
 from nau_py.model.linked import Project
 from nau_py.model.node import Node
 from nau_py.model.schema import schema_of
-from nau_py.model.walk import nodes
+from nau_py.model.walk import walk_nodes
 from nau_py.process.paths import resolve
 from nau_py.raytrace.programs.source import stand_in
 
@@ -32,7 +32,7 @@ def used_files(project: Project) -> dict[Path, str]:
     """
     found = {Path(p).resolve(): PROJECT for p in project.sources}
     found[project.path.resolve()] = PROJECT
-    for node in nodes(project):
+    for node in walk_nodes(project):
         for kind, path in _named(project, node):
             found.setdefault(path.resolve(), kind)
             for other in _related(path.resolve(), kind):

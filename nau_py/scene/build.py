@@ -9,7 +9,7 @@ import numpy as np
 from nau_py.diagnostics.diagnostic import Diagnostic, warning
 from nau_py.diagnostics.diagnostic import error as error_at
 from nau_py.diagnostics.location import Location
-from nau_py.model.library import qualified
+from nau_py.model.library import qualify_name
 from nau_py.model.linked import Project
 from nau_py.model.scene import BufferGeometry, Primitive, Scene, Terrain
 from nau_py.process.paths import resolve
@@ -120,7 +120,7 @@ class SceneBuilder:
     def _make_buffer_object(self, node: BufferGeometry) -> SceneObject:
         material = node.material or "__nauDefault"
         self.new_materials.append(material)
-        places = {a.tag: qualified(a.name or "", a.fromLibrary or "") for a in node.attributes}
+        places = {a.tag: qualify_name(a.name or "", a.fromLibrary or "") for a in node.attributes}
         group = Group(material, np.zeros((0, 1), np.uint32))
         mesh = Mesh({}, [group], node.primitive or "TRIANGLES", places)
         return SceneObject(node.name or "", mesh)

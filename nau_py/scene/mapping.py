@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from nau_py.model.library import DEFAULT_LIBRARY, qualified
+from nau_py.model.library import DEFAULT_LIBRARY, qualify_name
 from nau_py.model.linked import Project
-from nau_py.model.maps import InjectedColor, InjectionMap, matches
+from nau_py.model.maps import InjectedColor, InjectionMap, match_pattern
 from nau_py.model.node import Configured
 from nau_py.model.passes import Pass
 from nau_py.model.texture import Texture
@@ -74,7 +74,7 @@ class PassMaterials:
         self._everything: RenderMaterial | None = None
         for injection in pass_.injectionMaps:
             for name in table.default_names():
-                if injection.toMaterial and matches(injection.toMaterial, name):
+                if injection.toMaterial and match_pattern(injection.toMaterial, name):
                     self._inject(name, injection)
         for map_ in pass_.materialMaps:
             target = table.get(map_.toLibrary or DEFAULT_LIBRARY, map_.toMaterial or "")
@@ -84,7 +84,7 @@ class PassMaterials:
                 self._everything = target
                 self._mapped.clear()
             for name in table.default_names():
-                if matches(map_.fromMaterial, name):
+                if match_pattern(map_.fromMaterial, name):
                     self._mapped[name] = target
 
     def __getitem__(self, name: str) -> RenderMaterial | None:
@@ -128,13 +128,13 @@ class PassMaterials:
         for texture in injection.textures:
             if texture.toUnit is not None:
                 clone.textures[texture.toUnit] = TextureBinding(
-                    qualified(texture.name or "", texture.fromLibrary or ""),
+                    qualify_name(texture.name or "", texture.fromLibrary or ""),
                     list_parts(texture.settings),
                 )
         for image in injection.imageTextures:
             if image.toUnit is not None:
                 clone.images[image.toUnit] = ImageBinding(
-                    qualified(image.texture or "", image.fromLibrary or ""),
+                    qualify_name(image.texture or "", image.fromLibrary or ""),
                     list_parts(image.settings),
                 )
         for bound in injection.buffers:
@@ -146,7 +146,7 @@ class PassMaterials:
         project = self._table.project
         kind = str((node.get("TYPE") or ("SHADER_STORAGE",))[0])
         point = int(project.value(node, "BUFFER_BINDING", "BINDING_POINT")[0])
-        return BufferBinding(qualified(name or "", library or ""), kind, max(point, 0))
+        return BufferBinding(qualify_name(name or "", library or ""), kind, max(point, 0))
 
     def _inject_color(self, clone: RenderMaterial, color: InjectedColor) -> None:
         source = self._table.get(color.fromLibrary or "", color.fromMaterial or "")

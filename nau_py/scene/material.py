@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from nau_py.model.library import DEFAULT_LIBRARY, qualified
+from nau_py.model.library import DEFAULT_LIBRARY, qualify_name
 from nau_py.model.linked import Project
 from nau_py.model.material import ImageUnits, Material, ValueOf
 from nau_py.model.node import Setting
@@ -169,12 +169,12 @@ def make_library_material(project: Project, library: str, node: Material) -> Ren
     for unit in node.textures:
         if unit.name is not None and unit.UNIT is not None:
             material.textures[unit.UNIT] = TextureBinding(
-                qualified(unit.name, library), list_parts(unit.settings)
+                qualify_name(unit.name, library), list_parts(unit.settings)
             )
     for image in node.imageTextures:
         if image.texture is not None and image.UNIT is not None:
             material.images[image.UNIT] = ImageBinding(
-                qualified(image.texture, library), list_parts(image.settings)
+                qualify_name(image.texture, library), list_parts(image.settings)
             )
     for images in node.arraysOfImageTexture:
         _bind_images(project, material, library, images)
@@ -182,9 +182,9 @@ def make_library_material(project: Project, library: str, node: Material) -> Ren
         _bind_array(project, material, library, array.name, array.firstUnit)
     buffers = project.names("buffer")
     for bound in node.buffers:
-        name = qualified(bound.name or "", library)
+        name = qualify_name(bound.name or "", library)
         if name not in buffers and bound.fromLibrary:
-            name = qualified(bound.name or "", bound.fromLibrary)
+            name = qualify_name(bound.name or "", bound.fromLibrary)
         kind = str((bound.get("TYPE") or ("SHADER_STORAGE",))[0])
         point = int(project.value(bound, "BUFFER_BINDING", "BINDING_POINT")[0])
         material.buffers.append(BufferBinding(name, kind, max(point, 0)))
@@ -201,7 +201,7 @@ def make_library_material(project: Project, library: str, node: Material) -> Ren
 def _bind_images(
     project: Project, material: RenderMaterial, library: str, node: ImageUnits
 ) -> None:
-    full = qualified(node.textureArray or "", library)
+    full = qualify_name(node.textureArray or "", library)
     array = project.names("texture array").get(full)
     if isinstance(array, ArrayOfTextures) and node.FIRST_UNIT is not None:
         for index in range(count_textures(project, array)):
@@ -222,7 +222,7 @@ def count_textures(project: Project, array: ArrayOfTextures) -> int:
 def _bind_array(
     project: Project, material: RenderMaterial, library: str, name: str | None, first: int | None
 ) -> None:
-    full = qualified(name or "", library)
+    full = qualify_name(name or "", library)
     array = project.names("texture array").get(full)
     if not isinstance(array, ArrayOfTextures) or first is None:
         return

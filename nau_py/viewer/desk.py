@@ -13,7 +13,7 @@ import numpy as np
 from nau_py.api import lint, load, plan
 from nau_py.diagnostics.diagnostic import Diagnostic, Severity
 from nau_py.diagnostics.errors import NauError
-from nau_py.diagnostics.reporters import text_lines
+from nau_py.diagnostics.reporters import format_lines
 from nau_py.model.effects import EFFECTS
 from nau_py.model.effects import wanted as effects_wanted
 from nau_py.model.linked import Project
@@ -338,7 +338,7 @@ class Desk:
         return list(dict.fromkeys([*self.wrong, *self.findings]))
 
     def _told(self, diagnostic: Diagnostic) -> dict[str, Any]:
-        lines = text_lines(diagnostic, self.sources)
+        lines = format_lines(diagnostic, self.sources)
         return {
             "rule": diagnostic.rule,
             "severity": str(diagnostic.severity),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from nau_py.formats.settings import keys_of, spellings_of
+from nau_py.formats.settings import list_keys, list_spellings
 from nau_py.model.camera import Camera, Projection
 from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Node, Setting
@@ -61,13 +61,13 @@ def _edits(
     if written is not None:
         begin = document.offset(written.location)
         texts = _texts(project, written, value)
-        return document.set_components(begin, spellings_of(attribute), texts)
+        return document.set_components(begin, list_spellings(attribute), texts)
     texts = [write_text(v) for v in value]
     begin = document.offset(node.location)
     if isinstance(node, Camera) and node.projection and len(value) == 1:
         place = document.offset(node.projection.location)  # it is applied last, so it wins
         return document.set_attribute(place, component, texts[0]) or None
-    return document.add_setting(begin, component, keys_of(attribute), texts) or None
+    return document.add_setting(begin, component, list_keys(attribute), texts) or None
 
 
 def _default_edits(

@@ -16,7 +16,7 @@ import pytest
 from PIL import Image
 
 import nau_py
-from nau_py.formats.bind import unbind
+from nau_py.formats.bind import make_element
 from nau_py.formats.load import Reader, load_library
 from nau_py.model.library import MaterialLibrary
 from nau_py.model.node import Node
@@ -62,7 +62,7 @@ def test_no_attribute_is_lost(path: Path, tag: str, cls: type[Node], tmp_path: P
     assert parse_xml(text, str(path), []).count_attributes() == independent_count(text)
     project = load_library(path) if cls is MaterialLibrary else nau_py.load(path)
     node = project.libraries[-1] if cls is MaterialLibrary else project.file
-    assert unbind(node, tag, project.registry).count_attributes() == raw.count_attributes()
+    assert make_element(node, tag, project.registry).count_attributes() == raw.count_attributes()
     for style in ("xml", "yaml"):
         suffix = f".mlib.{style}" if cls is MaterialLibrary else f".{style}"
         again = tmp_path / f"again{suffix}"

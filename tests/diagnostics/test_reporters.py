@@ -10,7 +10,7 @@ import pytest
 from sarif_pydantic.sarif import Sarif
 
 import nau_py
-from nau_py.diagnostics.reporters import to_json, to_sarif, to_text, worst
+from nau_py.diagnostics.reporters import must_fail, to_json, to_sarif, to_text
 from tests.conftest import Folder
 
 BAD = """\
@@ -79,5 +79,5 @@ def test_strict_counts_warnings(folder: Folder) -> None:
     )
     found = nau_py.lint(folder.load())
     assert [str(d.severity) for d in found] == ["warning"]
-    assert not worst(found, strict=False)
-    assert worst(found, strict=True)
+    assert not must_fail(found, strict=False)
+    assert must_fail(found, strict=True)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import nau_py
-from nau_py.formats.bind import unbind
+from nau_py.formats.bind import make_element
 from nau_py.formats.load import Reader, load_library, load_project
 from nau_py.formats.write import format_node
 from nau_py.model.library import MaterialLibrary
@@ -100,7 +100,7 @@ def test_no_attribute_is_lost(folder: Folder) -> None:
     project = nau_py.load(path)
     raw = Reader().element(path, "project", ProjectFile)
     assert raw is not None
-    written = unbind(project.file, "project", project.registry)
+    written = make_element(project.file, "project", project.registry)
     assert raw.count_attributes() == EVERYTHING.count("=") - 2  # two stand inside def="…"
     assert written.count_attributes() == raw.count_attributes()
 

@@ -22,7 +22,7 @@ _FORMATS = " ".join(INTERNAL_FORMATS)
 _INT = DataType.INT
 
 
-def channels(internal_format: str) -> int:
+def count_channels(internal_format: str) -> int:
     """Return the number of channels of an internal format: 1, 2 or 4 (1 for depth)."""
     if internal_format.startswith("RGBA"):
         return 4

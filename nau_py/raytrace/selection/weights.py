@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.model.maps import matches
+from nau_py.model.maps import match_pattern
 from nau_py.model.mask import (
     AndSelector,
     DistanceSelector,
@@ -70,7 +70,7 @@ def compute_weights(selectors: list[Node], surfaces: VisibleSurfaces) -> F32:
 def _evaluate(selector: Node, surfaces: VisibleSurfaces) -> F64:
     """Return the weights of one selector, float64 (h, w)."""
     if isinstance(selector, MaterialSelector):
-        return _match_materials(surfaces, lambda name, _: matches(selector.name or "", name))
+        return _match_materials(surfaces, lambda name, _: match_pattern(selector.name or "", name))
     if isinstance(selector, PropertySelector):
         return _match_materials(surfaces, lambda _, colours: _is_between(selector, colours))
     if isinstance(selector, RegionSelector):
