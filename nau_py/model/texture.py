@@ -38,7 +38,7 @@ class CubeMap(Node):
 
 
 class ArrayOfTextures(Configured):
-    """TEXTURE_COUNT textures, named NAME_0, NAME_1 …"""
+    """An array of TEXTURE_COUNT textures, named NAME_0, NAME_1 and so on."""
 
     name: Annotated[str | None, Attr(doc="Name of the array.", required=True)] = None
     settings: Annotated[NodeSettings, Settings("ARRAY_OF_TEXTURES")] = Field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""XML → model → YAML → model is the identity, and nothing is lost on the way."""
+"""formats.bind, formats.yaml: XML → model → YAML → model is the identity; nothing is lost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Blocks <accuracy> and <effects>: each fault with its place and the words that help."""
+"""rules.accuracy: each fault of <accuracy> and <effects> with its place and message."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Faults of models, found by ``nau-lint --models``."""
+"""passes.models: faults of model files, found by ``nau-lint --models``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Physics libraries are checked and not simulated: docs/format.md, section 5."""
+"""rules.unsupported, model.physics: libraries are checked, not simulated (docs/format.md, 5)."""
 
 from __future__ import annotations
 

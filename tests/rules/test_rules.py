@@ -1,4 +1,4 @@
-"""Each rule on a small file: its id, its place, and the words that help."""
+"""All rules: each on a small file, with its id, its place and its message."""
 
 from __future__ import annotations
 

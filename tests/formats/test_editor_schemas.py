@@ -1,4 +1,4 @@
-"""The schemas for editors: what nau-fmt writes is valid, what is mistyped is not."""
+"""formats.json_schema, formats.xsd: output of nau-fmt is valid, misspelt names are not."""
 
 from __future__ import annotations
 
