@@ -18,11 +18,10 @@ from time import perf_counter, sleep
 
 import nau_py
 from nau_py.passes.frame import RunOptions
-from nau_py.process.renderer_child import Child
-from nau_py.run.reload import Watch
+from nau_py.run.reload import HotReload
 from nau_py.run.renderer import Renderer
-from nau_py.viewer.desk import Desk
-from nau_py.viewer.director import Director
+from nau_py.viewer.render_thread import RenderThread, make_worker
+from nau_py.viewer.state import ViewerState
 
 ROOT = Path(__file__).parent.parent
 RUNS = 5
@@ -34,7 +33,7 @@ def main() -> None:
         root = Path(folder)
         for name in ("projects/selective", "projects/models", "materials"):
             shutil.copytree(ROOT / name, root / name)
-        watch = Watch(
+        watch = HotReload(
             root / "projects/selective/project.xml",
             nau_py.load,
             lambda p: Renderer(p, size=(size, size)),
@@ -60,7 +59,7 @@ def main() -> None:
                 text = file.read_text()
                 begun = perf_counter()
                 file.write_text(text + "\n" + mark.format(run))
-                changed = watch.changed()
+                changed = watch.watch.take_changes()
                 assert changed, name
                 watch.render(changed)
                 times.append(perf_counter() - begun)
@@ -76,28 +75,28 @@ def main() -> None:
 
 def viewer(root: Path, size: int, frame: float) -> None:
     """Save a shader while nau-view shows the demo."""
-    desk = Desk(root / "projects/selective/project.xml", (size, size))
-    director = Director(desk, Child(desk.path, RunOptions()))
-    director.start()
-    while not desk.full:
+    state = ViewerState(root / "projects/selective/project.xml", (size, size))
+    render_thread = RenderThread(state, make_worker(state.path, RunOptions()))
+    render_thread.start()
+    while not state.full:
         sleep(0.01)
     file = root / "materials/shaders/combine.frag"
     firsts, fulls = [], []
     for run in range(RUNS):
         sleep(1.0)
-        text, attempt, full = file.read_text(), desk.attempt, desk.full
+        text, attempt, full = file.read_text(), state.attempt, state.full
         begun = perf_counter()
         file.write_text(text + f"\n// {run}\n")
-        while desk.attempt == attempt:
+        while state.attempt == attempt:
             sleep(0.0005)
-        shown = desk.pictures
-        while desk.pictures == shown:
+        shown = state.pictures
+        while state.pictures == shown:
             sleep(0.0005)
         firsts.append(perf_counter() - begun)
-        while desk.full == full:
+        while state.full == full:
             sleep(0.0005)
         fulls.append(perf_counter() - begun)
-    director.close()
+    render_thread.close()
     for label, times in (("first", firsts), ("full size", fulls)):
         middle = statistics.median(times)
         print(

@@ -20,7 +20,7 @@ STRICT: dict[str, set[str]] = {
 }
 """Room to the part of the foundation that it may import."""
 REPEATED_CLASSES = {
-    "Child", "CostRun", "Group", "Kind", "Layout",
+    "Group", "Kind", "Layout",
     "Program", "Programs", "Resources", "Scene", "Style",
     "Texture", "_Reader",
 }  # fmt: skip
@@ -28,7 +28,7 @@ REPEATED_CLASSES = {
 ARROWS = {
     "diagnostics": set(),
     "syntax": set(),
-    "process": {"model", "passes", "viewer", "raytrace/programs", "raytrace/ptx"},
+    "process": set(),
     "model": set(),
     "formats": {"model"},
     "graph": {"model"},

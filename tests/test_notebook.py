@@ -36,7 +36,7 @@ def test_the_tutorial_runs(
 ) -> None:
     monkeypatch.chdir(ROOT)
     kept = tmp_path_factory.mktemp("references")
-    monkeypatch.setattr("nau_py.accuracy.reference.cache_folder", lambda: kept)
+    monkeypatch.setattr("nau_py.accuracy.reference.make_cache_folder", lambda name: kept)
     shown = run_cells(ROOT / "docs" / "tutorial.ipynb")
     kinds = [type(value).__name__ for value in shown]
     assert kinds == ["Project", "Plan", "Frame", "float", "tuple", "list", "Frame", "CostRun"]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import io
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -15,6 +14,7 @@ import nau_py.version
 from nau_py.accuracy.candidate import Candidate
 from nau_py.accuracy.measure import Bench, Reference
 from nau_py.model.knob import pick_raytrace_passes
+from nau_py.process.cache_folder import make_cache_folder
 from nau_py.process.files import write_bytes
 from nau_py.run.used_files import used_files
 
@@ -25,11 +25,6 @@ FIRST_SEED = 1_000_003
 """Far from the seeds of candidates, so that no candidate is a part of the reference."""
 KEPT = 24
 """References in the cache; the oldest go."""
-
-
-def cache_folder() -> Path:
-    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    return Path(base) / "nau_py" / "references"
 
 
 def content_key(bench: Bench, candidate: Candidate, spp: int, device: str) -> str:
@@ -67,11 +62,12 @@ def reference(
     keep: bool = True,
 ) -> Reference:
     """Render ``candidate`` with ``spp`` samples a pixel in all, or take it from the cache."""
-    path = cache_folder() / f"{content_key(bench, candidate, spp, device)}.npz"
+    folder = make_cache_folder("references") if keep else None
+    path = None if folder is None else folder / f"{content_key(bench, candidate, spp, device)}.npz"
     rays = bool(pick_raytrace_passes(bench.pipeline.passes))
     label = candidate.but("spp", spp).label if rays else candidate.label
     batch = candidate.but("spp", -(-spp // BATCHES)) if rays else candidate
-    if keep and path.is_file():
+    if path is not None and path.is_file():
         found = _load(path, spp, label)
         if found is not None:
             told(1.0)
@@ -81,7 +77,7 @@ def reference(
     own = Candidate((("spp", 1), ("mask", "project"))) if candidate["mask"] else None
     mask = bench.pictures(own, [0], lambda done, part: None)[1] if own else None
     made = Reference(moments.mean, moments.variance / BATCHES, mask, spp, label)
-    if keep:
+    if path is not None:
         _save(path, made)
     return made
 
@@ -113,7 +109,6 @@ def _save(path: Path, made: Reference) -> None:
         arrays["mask"] = made.mask
     np.savez(stream, **arrays)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         write_bytes(path, stream.getvalue())
         old = sorted(path.parent.glob("*.npz"), key=lambda p: p.stat().st_mtime)[:-KEPT]
         for other in old:

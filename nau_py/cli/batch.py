@@ -22,8 +22,9 @@ def run_batch(
     quiet: bool,
 ) -> int:
     """Exit status: 0 where every project was rendered, 1 otherwise."""
-    from nau_py.grading.grade import Limits, grade
+    from nau_py.grading.grade import grade
     from nau_py.grading.page import page
+    from nau_py.process.supervised import Limits
 
     if not folder.is_dir():
         raise typer.BadParameter(f"'{folder}' is no folder")

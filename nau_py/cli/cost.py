@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from nau_py.model.linked import Project
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+ENTRY = "nau_py.cli.cost:main"
 UNMET = 1
 
 
@@ -88,8 +89,15 @@ def run(
     from nau_py.accuracy.cost import Wishes, cost
     from nau_py.cli.cost_output import print_cost, whole_progress, write_all
     from nau_py.passes.frame import RunOptions
+    from nau_py.passes.ptx.compiled import needs_supervision
 
     loaded = nau_py.load(project)
+    if needs_supervision(loaded):  # compiled programs could end this process
+        from nau_py.passes.ptx.supervised_run import run_supervised
+
+        status, said = run_supervised(ENTRY, sys.argv[1:], loaded)
+        say(said, loaded.sources)
+        raise typer.Exit(status)
     options = RunOptions(
         seed=seed, threads=threads, allow_programs=tuple(str(p) for p in allow_programs or ())
     )

@@ -14,6 +14,7 @@ import typer
 from nau_py.cli.common import USAGE, guarded, say, size_of, write_result
 from nau_py.diagnostics.diagnostic import Severity
 
+ENTRY = "nau_py.cli.run:main"
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
 
@@ -152,12 +153,14 @@ def run(
     import nau_py
     from nau_py.cli.progress import progress_bar
     from nau_py.passes.frame import RunOptions
-    from nau_py.process import guard
+    from nau_py.passes.ptx.compiled import needs_supervision
 
     loaded = nau_py.load(project)
     chosen = programs.value if programs else ""
-    if guard.needed(loaded, chosen):  # compiled programs could end this process
-        status, said = guard.run_guarded(sys.argv[1:], loaded, program_limit)
+    if needs_supervision(loaded, chosen):  # compiled programs could end this process
+        from nau_py.passes.ptx.supervised_run import run_supervised
+
+        status, said = run_supervised(ENTRY, sys.argv[1:], loaded, program_limit)
         say(said, loaded.sources)
         raise typer.Exit(status)
     options = RunOptions(

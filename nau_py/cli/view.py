@@ -56,9 +56,8 @@ def view(
         )
         raise typer.Exit(FAILED) from None
     from nau_py.passes.frame import RunOptions
-    from nau_py.process.renderer_child import Child
-    from nau_py.viewer.desk import Desk
-    from nau_py.viewer.director import Director
+    from nau_py.viewer.render_thread import RenderThread, make_worker
+    from nau_py.viewer.state import ViewerState
 
     listening = bound(port)
     if listening is None:
@@ -70,10 +69,10 @@ def view(
         no_programs=no_programs,
     )
     token = secrets.token_urlsafe(16)
-    desk = Desk(project, size_of(size))
-    director = Director(desk, Child(desk.path, options, limit))
+    state = ViewerState(project, size_of(size))
+    render_thread = RenderThread(state, make_worker(state.path, options, limit))
     config = uvicorn.Config(
-        make_app(desk, director, token),
+        make_app(state, render_thread, token),
         log_level="error",
         ws="websockets-sansio",
         timeout_graceful_shutdown=1,

@@ -13,11 +13,11 @@ from nau_py.diagnostics.errors import NauError
 from nau_py.model.linked import Project
 from nau_py.reporting.output import write_image
 from nau_py.run.frame import Frame
-from nau_py.run.reload import Watch
+from nau_py.run.reload import HotReload
 from nau_py.run.renderer import Renderer
 
 PERIOD = 0.02
-"""Seconds between two looks at the files."""
+"""Seconds between two checks of the files."""
 
 
 def run_watch(
@@ -29,27 +29,25 @@ def run_watch(
 ) -> int:
     """Render, then follow the files. A wrong state is said on stderr, and the last good picture
     stays. Ends by Ctrl-C, with exit status 0."""
-    watch = Watch(path, load, make, frame, output)
+    reload = HotReload(path, load, make, frame, output)
     sys.stderr.write(f"{strftime('%H:%M:%S')} watching {path}; Ctrl-C ends\n")
     try:
-        _attempt(watch, watch.start, "first picture", output, show)
+        _attempt(reload, reload.start, "first picture", output, show)
         while True:
             sleep(PERIOD)
-            changed = watch.changed()
+            changed = reload.watch.take_settled_changes()
             if not changed:
                 continue
-            sleep(PERIOD)  # an editor may write in several steps
-            changed |= watch.changed()
             names = ", ".join(sorted(p.name for p in changed))
-            _attempt(watch, lambda now=changed: watch.render(now), names, output, show)  # type: ignore[misc]
+            _attempt(reload, lambda now=changed: reload.render(now), names, output, show)  # type: ignore[misc]
     except KeyboardInterrupt:
         return 0
     finally:
-        watch.close()
+        reload.close()
 
 
 def _attempt(
-    watch: Watch,
+    reload: HotReload,
     render: Callable[[], Frame],
     why: str,
     output: Path | None,
@@ -61,7 +59,7 @@ def _attempt(
         if output is not None:
             write_image(output, frame.image)
     except NauError as problem:
-        say(problem.diagnostics, watch.project.sources)
+        say(problem.diagnostics, reload.project.sources)
         sys.stderr.write(f"{strftime('%H:%M:%S')} {why}: wrong; the last picture stays\n")
         return
     ms = (perf_counter() - begun) * 1000

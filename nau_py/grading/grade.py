@@ -11,19 +11,10 @@ from pathlib import Path
 from threading import Event
 from typing import Any
 
-from nau_py.process.isolation import python_command
-from nau_py.process.limited import LARGEST, Ended, run_limited
+from nau_py.process.supervised import Limits, Outcome, run_limited
 
 _RUN = "nau_py.cli.run:main"
 _LINT = "nau_py.cli.lint:main"
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """For each project: ``seconds`` and ``megabytes``."""
-
-    seconds: float = 120.0
-    megabytes: float = 4096.0
 
 
 @dataclass(slots=True)
@@ -83,13 +74,12 @@ def grade_one(
     name: str,
     limits: Limits,
     more: Sequence[str],
-    give_up: Callable[[], bool] = lambda: False,
+    cancelled: Callable[[], bool] = lambda: False,
 ) -> Result:
     """Lint, then render, one project."""
 
-    def run(entry: str, *words: str) -> Ended:
-        command = python_command(entry, words, LARGEST)
-        return run_limited(command, limits.seconds, limits.megabytes, give_up)
+    def run(entry: str, *arguments: str) -> Outcome:
+        return run_limited(entry, arguments, limits, cancelled)
 
     linted = run(_LINT, "--format", "json", str(path))
     if linted.stopped:
@@ -97,12 +87,14 @@ def grade_one(
     diagnostics = _findings(linted)
     with tempfile.TemporaryDirectory() as folder:
         picture, report = Path(folder, "picture.png"), Path(folder, "report.json")
-        ended = run(_RUN, str(path), "-o", str(picture), "--report", str(report), "--quiet", *more)
-        found = Result(name, "rendered", "", ended.seconds, diagnostics, said=ended.err)
-        if ended.stopped:
-            found.status, found.why = "stopped", ended.stopped
-        elif ended.code != 0:
-            found.status, found.why = "wrong", _first_error(ended)
+        outcome = run(
+            _RUN, str(path), "-o", str(picture), "--report", str(report), "--quiet", *more
+        )
+        found = Result(name, "rendered", "", outcome.seconds, diagnostics, said=outcome.err)
+        if outcome.stopped:
+            found.status, found.why = "stopped", outcome.stopped
+        elif outcome.code != 0:
+            found.status, found.why = "wrong", _first_error(outcome)
         if picture.is_file():
             found.picture = picture.read_bytes()
         if report.is_file():
@@ -110,17 +102,17 @@ def grade_one(
     return found
 
 
-def _findings(ended: Ended) -> list[dict[str, Any]]:
+def _findings(outcome: Outcome) -> list[dict[str, Any]]:
     try:
-        found = json.loads(ended.out)
+        found = json.loads(outcome.out)
     except ValueError:
         return []
     return list(found)
 
 
-def _first_error(ended: Ended) -> str:
-    lines = [line for line in ended.err.splitlines() if "error[" in line]
+def _first_error(outcome: Outcome) -> str:
+    lines = [line for line in outcome.err.splitlines() if "error[" in line]
     if lines:
         return lines[0].partition("error[")[2].partition("]: ")[2]
-    rest = ended.err.strip().splitlines()
-    return rest[-1] if rest else f"nau-run ended with status {ended.code}"
+    rest = outcome.err.strip().splitlines()
+    return rest[-1] if rest else f"nau-run ended with status {outcome.code}"

@@ -9,7 +9,8 @@ from typing import Any
 from PIL import Image
 
 import nau_py.reporting.html as html
-from nau_py.grading.grade import Limits, Result
+from nau_py.grading.grade import Result
+from nau_py.process.supervised import Limits
 from nau_py.reporting.html import Markup
 
 _MOST = 480

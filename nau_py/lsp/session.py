@@ -11,8 +11,8 @@ from nau_py.formats.load import is_library, load_library, load_project
 from nau_py.lsp.complete import Grammar
 from nau_py.lsp.symbols import Symbols
 from nau_py.model.linked import Project
+from nau_py.process.file_watch import Stamp, read_stamp
 from nau_py.process.paths import forget_folders
-from nau_py.run.reload import Stamp, stamp
 from nau_py.run.used_files import used_files
 from nau_py.syntax.language import YAML_SUFFIXES, is_yaml
 
@@ -79,7 +79,7 @@ class EditorSession:
             sources = list(known[0]) if known is not None else [path]
         else:
             sources = [Path(p) for p in project.sources]
-        return {p: self.texts.get(p.resolve()) or stamp(p) for p in sources}
+        return {p: self.texts.get(p.resolve()) or read_stamp(p) for p in sources}
 
     def lint_file(self, path: Path) -> list[Diagnostic]:
         """Lint a project or library, in all its files."""

@@ -14,8 +14,8 @@ _OWNER_ONLY = 0o700
 def make_cache_folder(name: str) -> Path | None:
     """Make the folder ``name`` in the user's cache; None where nothing can be kept.
 
-    The path is absolute, the folder is the user's own, and nobody else has access: caches of machine
-    code are executed, so another user must not be able to write them. On Linux it is below
+    The path is absolute, the folder is the user's own, and nobody else has access: cached machine
+    code is executed, so other users must not be able to write it. On Linux it is below
     ``$XDG_CACHE_HOME`` or ``~/.cache``; a relative ``XDG_CACHE_HOME`` is ignored, as the XDG
     specification demands.
     """

@@ -49,9 +49,9 @@ class RequestCancelled(NauError):
 def serve(make_target: Callable[[Any, ReportProgress], object]) -> None:
     """Answer requests in a worker process until its parent closes the channel.
 
-    ``make_target`` gets the ``setup`` of :class:`Worker` and a function that reports progress, which
-    raises :class:`RequestCancelled` in the middle of a cancelled request. Requests name the methods
-    of the object that it returns.
+    ``make_target`` gets the ``setup`` of :class:`Worker` and a function that reports progress,
+    which raises :class:`RequestCancelled` in the middle of a cancelled request. Requests name the
+    methods of the object that it returns.
     """
     channel = open_child_channel()
     current = 0

@@ -7,34 +7,23 @@ says why.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 
 from nau_py.diagnostics.errors import NauError
 from nau_py.model.linked import Project
+from nau_py.process.file_watch import FileWatch
 from nau_py.run.frame import Frame
 from nau_py.run.renderer import Renderer
 from nau_py.run.used_files import PROGRAM, SHADER, used_files
 
-Stamp = tuple[int, int, int] | None
 
-
-def stamp(path: Path) -> Stamp:
-    """What tells a file from a later one of its name: time, size, inode; None for none."""
-    try:
-        found = os.stat(path)
-    except OSError:
-        return None
-    return found.st_mtime_ns, found.st_size, found.st_ino
-
-
-class Watch:
-    """A project that is rendered again when its files change.
+class HotReload:
+    """Project that is rendered again when its files change; :attr:`watch` follows them.
 
     ``load`` reads the project; ``make`` makes a renderer for it, and raises
-    :class:`~nau_py.NauError` for a wrong one. ``frame``: the frame to render. ``own``: a
-    file that is written from the pictures, which is not followed.
+    :class:`~nau_py.NauError` for a wrong one. ``frame``: the frame to render. ``own``: file
+    that is written from the pictures, which is not followed.
     """
 
     def __init__(
@@ -51,8 +40,7 @@ class Watch:
         self.renderer: Renderer | None = None
         self._sound = False
         """Whether the last rendering succeeded: only then a part of it may be exchanged."""
-        self._kinds: dict[Path, str] = {}
-        self._stamps: dict[Path, Stamp] = {}
+        self.watch = FileWatch()
         self._follow(self.project)
 
     def _follow(self, project: Project) -> None:
@@ -60,15 +48,7 @@ class Watch:
         kinds = used_files(self.project) | used_files(project)
         if self._own is not None:
             kinds.pop(self._own, None)
-        self._stamps = {p: self._stamps.get(p, stamp(p)) for p in kinds}
-        self._kinds = kinds
-
-    def changed(self) -> dict[Path, str]:
-        """The files that have changed since they were last asked about, and their kinds."""
-        found = {p: k for p, k in self._kinds.items() if stamp(p) != self._stamps[p]}
-        for path in found:
-            self._stamps[path] = stamp(path)
-        return found
+        self.watch.follow(kinds)
 
     def start(self) -> Frame:
         """Render for the first time. Raises :class:`~nau_py.NauError`."""

@@ -1,5 +1,6 @@
 """The viewer: a page in a browser that shows a project and steers it.
 
-``desk`` holds what every window sees; ``studio`` renders, in a child process (``child``) that can
-be ended and started again; ``server`` speaks HTTP and web sockets with the page in ``page/``.
+``state`` holds the state that every window shares; ``render_thread`` keeps the picture up to date
+through ``worker``, a process that can be ended and started again; ``server`` answers the page in
+``page/`` by HTTP and web sockets.
 """

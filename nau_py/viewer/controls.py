@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
+from math import isfinite
 from typing import Any
 
 from nau_py.model.attribute import Attribute
@@ -266,3 +267,28 @@ def _selector(project: Project, context: str) -> Node | None:
                 if index.isdigit() and int(index) < len(listed):
                     return listed[int(index)]
     return None
+
+
+def check_value(control: Control, parts: Any) -> tuple[Scalar, ...]:
+    """Return a value that a control can take. Raises :class:`ValueError` with the legal ones."""
+    listed = list(parts) if isinstance(parts, list | tuple) else [parts]
+    if len(listed) != len(control.value):
+        raise ValueError(f"{control.label} takes {len(control.value)} values, not {len(listed)}")
+    if control.kind == "choice":
+        if listed[0] not in control.choices:
+            raise ValueError(f"{control.label} is one of {', '.join(control.choices)}")
+        return (str(listed[0]),)
+    if control.kind == "flag":
+        return (bool(listed[0]),)
+    found: list[Scalar] = []
+    for part in listed:
+        number = float(part)
+        if not isfinite(number):
+            raise ValueError(f"{control.label}: {part} is not finite")
+        low, high = control.minimum, control.maximum
+        if (low is not None and number < low) or (high is not None and number > high):
+            least = "" if low is None else f" from {low:g}"
+            most = "" if high is None else f" to {high:g}"
+            raise ValueError(f"{control.label} is {number:g}; legal is{least}{most}")
+        found.append(int(number) if control.kind == "whole" else number)
+    return tuple(found)

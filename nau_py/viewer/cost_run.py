@@ -1,43 +1,47 @@
-"""``nau-cost`` for the viewer: a process of its own, its page shown when it is done."""
+"""Run of ``nau-cost`` for the viewer, in a process of its own."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
 
-from nau_py.process.isolation import Process, start_python
+from nau_py.process.supervised import DEVNULL, SupervisedProcess
 
 _ENTRY = "nau_py.cli.cost:main"
+_LAST_LINES = 12
+"""Lines of its messages that the page shows."""
 
 
-class CostRun:
-    """One measurement at a time; ``folder`` takes what it writes."""
+class ViewerCostRun:
+    """One measurement at a time; ``folder`` takes its files."""
 
     def __init__(self, project: Path, folder: Path) -> None:
         self.project, self.folder = project, folder
-        self._process: Process | None = None
+        self._process: SupervisedProcess | None = None
 
     def start(self, pipeline: str) -> None:
-        """Measure the files as they are saved; nothing where a measurement is under way."""
-        if self._process is not None and self._process.poll() is None:
+        """Measure the saved files, unless a measurement is running."""
+        if self._process is not None and self._process.running:
             return
-        options = ["--pipeline", pipeline, "--out", str(self.folder)]
-        self._process = start_python(_ENTRY, [str(self.project), *options], self.folder / "log.txt")
+        arguments = [str(self.project), "--pipeline", pipeline, "--out", str(self.folder)]
+        with (self.folder / "log.txt").open("wb") as log:
+            self._process = SupervisedProcess(_ENTRY, arguments, stdout=DEVNULL, stderr=log)
 
     def state(self) -> dict[str, Any]:
-        """``state``: none, running, done or failed; ``said``: the last lines of its messages."""
+        """Return ``state``: none, running, done or failed; ``said``: its last messages."""
         if self._process is None:
             return {"state": "none", "said": []}
-        code = self._process.poll()
+        code = self._process.exit_code
         lines = (self.folder / "log.txt").read_text("utf-8", "replace").splitlines()
         state = "running" if code is None else "done" if code == 0 else "failed"
-        return {"state": state, "said": lines[-12:]}
+        return {"state": state, "said": lines[-_LAST_LINES:]}
 
     def page(self) -> str | None:
+        """Return the page of the last measurement; None if there is none."""
         found = sorted(self.folder.glob("*.html"))
         return found[0].read_text("utf-8") if found else None
 
     def stop(self) -> None:
-        if self._process is not None and self._process.poll() is None:
-            self._process.kill()
-            self._process.wait()
+        """End a running measurement."""
+        if self._process is not None:
+            self._process.stop()

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from nau_py.viewer.controls import key_of
-from nau_py.viewer.desk import Desk
 from nau_py.viewer.save import write_text
+from nau_py.viewer.state import ViewerState
 
 
-def camera_element(desk: Desk) -> str:
-    """The camera as it stands, as XML and as YAML, to be pasted. Raises :class:`ValueError` where
-    the pipeline names no camera."""
-    name, pose = desk.camera(), desk.pose()
-    values = {c.key: desk.values.get(c.key, c.value) for c in desk.controls()}
+def camera_element(state: ViewerState) -> str:
+    """Return the present camera as XML and YAML elements of a project file. Raises
+    :class:`ValueError` if the pipeline names no camera."""
+    name, pose = state.camera(), state.pose()
+    values = {c.key: state.values.get(c.key, c.value) for c in state.controls()}
     projection = {
         component: write_text(value[0])
         for component in ("FOV", "NEAR", "FAR", "LEFT", "RIGHT", "BOTTOM", "TOP")

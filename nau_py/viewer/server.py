@@ -25,13 +25,14 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from nau_py.diagnostics.errors import NauError
-from nau_py.process.renderer_child import Lost, Refused
+from nau_py.process.worker import RequestRefused, WorkerLost
 from nau_py.reporting.target_picture import CHANNELS
-from nau_py.viewer.cost_run import CostRun
-from nau_py.viewer.desk import Desk
-from nau_py.viewer.director import Director
+from nau_py.viewer.cost_run import ViewerCostRun
 from nau_py.viewer.export import camera_element
-from nau_py.viewer.studio import Wanted
+from nau_py.viewer.page_data import content_data, picture_data
+from nau_py.viewer.render_thread import RenderThread
+from nau_py.viewer.request import PictureRequest
+from nau_py.viewer.state import ViewerState
 
 PAGE = files("nau_py.viewer") / "page"
 TYPES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css"}
@@ -84,14 +85,14 @@ class Gate:
 class Windows:
     """The browsers that look: each is told the newest state when it is ready for it."""
 
-    def __init__(self, desk: Desk) -> None:
-        self.desk = desk
+    def __init__(self, state: ViewerState) -> None:
+        self.state = state
         self.events: set[asyncio.Event] = set()
         self._loop: asyncio.AbstractEventLoop | None = None
 
     def begin(self) -> None:
         self._loop = asyncio.get_running_loop()
-        self.desk.changed = self.news
+        self.state.changed = self.news
 
     def news(self) -> None:
         """Called by any thread."""
@@ -108,10 +109,10 @@ class Windows:
 class Site:
     """The routes, over one desk."""
 
-    def __init__(self, desk: Desk, director: Director, folder: Path) -> None:
-        self.desk, self.director = desk, director
-        self.windows = Windows(desk)
-        self.cost = CostRun(desk.path, folder)
+    def __init__(self, state: ViewerState, render_thread: RenderThread, folder: Path) -> None:
+        self.state, self.render_thread = state, render_thread
+        self.windows = Windows(state)
+        self.cost = ViewerCostRun(state.path, folder)
 
     async def static(self, request: Request) -> Response:
         name = request.path_params.get("name") or "index.html"
@@ -145,9 +146,9 @@ class Site:
             while True:
                 await event.wait()
                 event.clear()
-                said: dict[str, Any] = {"glance": self.desk.glance()}
-                if self.desk.version != known:
-                    content = self.desk.content()
+                said: dict[str, Any] = {"glance": picture_data(self.state)}
+                if self.state.version != known:
+                    content = content_data(self.state)
                     said["content"], known = content, content["version"]
                 await socket.send_text(json.dumps(said))
 
@@ -156,18 +157,18 @@ class Site:
             command = json.loads(text)
             if not isinstance(command, dict):
                 raise ValueError("a command is an object")
-            await asyncio.to_thread(self.director.do, command)
+            await asyncio.to_thread(self.render_thread.do, command)
         except ValueError as problem:
             await socket.send_text(json.dumps({"refused": str(problem)}))
 
     async def picture(self, request: Request) -> Response:
-        shown = self.desk.picture
+        shown = self.state.picture
         if shown is None:
             return self._missing("there is no picture yet")
         return Response(shown.png, media_type="image/png", headers=_HEADERS)
 
     async def _asked(self, name: str, *arguments: Any) -> Any:
-        future: Future[Any] = self.director.ask(name, *arguments)
+        future: Future[Any] = self.render_thread.request(name, *arguments)
         return await asyncio.wrap_future(future)
 
     async def thumbnails(self, request: Request) -> Response:
@@ -194,14 +195,14 @@ class Site:
     async def keep(self, request: Request) -> Response:
         """Keep the picture, or render another pipeline or other effects, as the other side."""
         query = request.query_params
-        wanted = self.desk.wanted()
+        shown = self.state.picture_request()
         label = query.get("label", "")
         if "pipeline" in query or "effects" in query:
-            pipeline = query.get("pipeline") or wanted.pipeline
-            if self.desk.project.pipeline(pipeline) is None:
+            pipeline = query.get("pipeline") or shown.pipeline
+            if self.state.project.pipeline(pipeline) is None:
                 return self._missing(f"there is no pipeline '{pipeline}'")
-            effects = query.get("effects") or wanted.effects
-            other = Wanted(pipeline, wanted.frame, wanted.values, effects, wanted.size)
+            effects = query.get("effects") or shown.effects
+            other = PictureRequest(pipeline, shown.frame, shown.values, effects, shown.size)
             data = await self._asked("render_other", other, _OTHER_STEPS, label)
         else:
             data = await self._asked("keep", label)
@@ -223,16 +224,16 @@ class Site:
             last = int(request.query_params.get("last", 0))
             if not 0 <= first <= last < first + MOST_SEQUENCE:
                 return self._missing(f"frames {first} to {last}: at most {MOST_SEQUENCE}, from 0")
-            data = await self._asked("sequence", self.desk.wanted(), first, last)
+            data = await self._asked("sequence", self.state.picture_request(), first, last)
             return Response(data, media_type="application/zip", headers=_HEADERS)
         if kind == "camera.txt":
-            return PlainTextResponse(camera_element(self.desk), headers=_HEADERS)
+            return PlainTextResponse(camera_element(self.state), headers=_HEADERS)
         return self._missing(f"'{kind}' cannot be exported")
 
     async def measure(self, request: Request) -> Response:
         """Start ``nau-cost``, or say how far it is."""
         if request.method == "POST":
-            self.cost.start(self.desk.pipeline)
+            self.cost.start(self.state.pipeline)
         return JSONResponse(self.cost.state(), headers=_HEADERS)
 
     async def measured(self, request: Request) -> Response:
@@ -248,24 +249,24 @@ def _said(work: Callable[[Request], Awaitable[Response]]) -> Callable[..., Await
     async def answer(request: Request) -> Response:
         try:
             return await work(request)
-        except (Refused, Lost, NauError, ValueError) as problem:
+        except (RequestRefused, WorkerLost, NauError, ValueError) as problem:
             return PlainTextResponse(f"{problem}\n", status_code=409, headers=_HEADERS)
 
     return answer
 
 
-def make_app(desk: Desk, director: Director, token: str) -> Any:
-    """The application (ASGI); ``director`` lives as long as it."""
+def make_app(state: ViewerState, render_thread: RenderThread, token: str) -> Any:
+    """The application (ASGI); ``render_thread`` lives as long as it."""
     scratch = tempfile.TemporaryDirectory(prefix="nau-view-")
-    site = Site(desk, director, Path(scratch.name))
+    site = Site(state, render_thread, Path(scratch.name))
 
     @contextlib.asynccontextmanager
     async def life(_: Starlette) -> AsyncIterator[None]:
         site.windows.begin()
-        director.start()
+        render_thread.start()
         yield
         site.cost.stop()
-        await asyncio.to_thread(director.close)
+        await asyncio.to_thread(render_thread.close)
         scratch.cleanup()
 
     def route(path: str, work: Callable[[Request], Awaitable[Response]], *methods: str) -> Route:

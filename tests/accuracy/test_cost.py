@@ -37,7 +37,8 @@ DOWN = '<POSITION x="0" y="1.5" z="0" /><VIEW x="0" y="-1" z="0" /><UP x="0" y="
 def own_cache(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
     """References of tests are not kept beyond them."""
     monkeypatch.setattr(
-        "nau_py.accuracy.reference.cache_folder", lambda: tmp_path_factory.mktemp("references")
+        "nau_py.accuracy.reference.make_cache_folder",
+        lambda name: tmp_path_factory.mktemp("references"),
     )
 
 
@@ -141,7 +142,7 @@ def test_references_are_kept_by_content(
 ) -> None:
     """The same project finds its reference; another colour, size or number does not."""
     kept = tmp_path_factory.mktemp("kept")
-    monkeypatch.setattr("nau_py.accuracy.reference.cache_folder", lambda: kept)
+    monkeypatch.setattr("nau_py.accuracy.reference.make_cache_folder", lambda name: kept)
 
     def cached(**asked: Any) -> bool:
         wishes = {"knobs": {"spp": "2"}, "reference": 16} | asked

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import pytest
 
-from nau_py.process.limited import run_limited
 from tests.conftest import Folder, heed_interrupts
 from tests.raytrace.studio import colour, program, square, studio
 
@@ -128,25 +127,6 @@ def test_the_page_is_whole_and_harmless(
     assert "<td>trace</td><td>raytrace</td>" in section
     assert "<script" not in page
     assert re.findall(r"(?:src|href)=\"(?!data:|#)[^\"]*\"|https?://", page) == []
-
-
-def test_processes_that_it_starts_end_with_it(tmp_path: Path) -> None:
-    """A child of a child does not outlive the limit."""
-    mark = tmp_path / "alive"
-    child = f"import time; time.sleep(2); open({str(mark)!r}, 'w')"
-    code = f"""import subprocess, sys, time
-subprocess.Popen([sys.executable, "-c", {child!r}])
-time.sleep(100)"""
-    ended = run_limited([sys.executable, "-c", code], 1.0, 4000)
-    assert ended.code is None
-    assert ended.seconds < 2.5
-    subprocess.run(["sleep", "2"], check=True)
-    assert not mark.exists()
-
-
-def test_a_process_that_ends_by_itself() -> None:
-    ended = run_limited([sys.executable, "-c", "print('x'); raise SystemExit(3)"], 20, 4000)
-    assert (ended.code, ended.out, ended.stopped) == (3, "x\n", "")
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 
 import nau_py
 from nau_py.passes import pass_classes
-from nau_py.run.reload import Watch
+from nau_py.run.reload import HotReload
 from nau_py.run.renderer import Renderer
 from nau_py.run.used_files import PROGRAM, SHADER
 from tests.conftest import ROOT, Folder
@@ -124,7 +124,7 @@ def test_every_class_has_a_project() -> None:
 def test_reload(folder: Folder, class_: str) -> None:
     """Nothing has changed but the time of the files: the renderer stays, and so does the picture."""
     project(folder, class_)
-    watch = Watch(
+    watch = HotReload(
         folder.path / "project.xml", nau_py.load, lambda p: Renderer(p, keep_targets=True)
     )
     first = watch.start()

@@ -12,9 +12,9 @@ import pytest
 
 from nau_py.passes.frame import RunOptions
 from nau_py.process.isolation import isolated_environment, python_command
-from nau_py.process.renderer_child import Child
-from nau_py.viewer.cost_run import CostRun
-from nau_py.viewer.studio import Wanted
+from nau_py.viewer.cost_run import ViewerCostRun
+from nau_py.viewer.render_thread import make_worker
+from nau_py.viewer.request import PictureRequest
 from tests.conftest import LAMBERT, Folder, RayProject
 from tests.passes.test_ptx import room as room
 
@@ -100,12 +100,12 @@ def test_guarded_run_of_compiled_programs(room: Folder) -> None:
 
 def test_processes_of_the_viewer(hostile: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(hostile)
-    renderer = Child(hostile / "project.xml", RunOptions(threads=1))
+    worker = make_worker(hostile / "project.xml", RunOptions(threads=1))
     try:
-        assert renderer.ask("render", Wanted("P"), False).width == 16
+        assert worker.request("render", PictureRequest("P"), False).width == 16
     finally:
-        renderer.stop()
-    cost = CostRun(hostile / "project.xml", hostile)
+        worker.stop()
+    cost = ViewerCostRun(hostile / "project.xml", hostile)
     try:
         cost.start("P")
         for _ in range(600):

@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 import nau_py
-from nau_py.run.reload import Watch
+from nau_py.run.reload import HotReload
 from nau_py.run.renderer import Renderer
 from nau_py.run.used_files import used_files
 from tests.conftest import PROJECTS, Folder, heed_interrupts
@@ -92,21 +92,21 @@ def change(folder: Folder, name: str, old: str, new: str) -> None:
     file.write_text(text.replace(old, new))
 
 
-def after(watch: Watch) -> list[int]:
-    changed = watch.changed()
+def after(watch: HotReload) -> list[int]:
+    changed = watch.watch.take_changes()
     assert changed
     return shown(watch.render(changed))
 
 
 @pytest.fixture
-def watch(watched: Folder) -> Watch:
-    made = Watch(watched.path / "project.xml", nau_py.load, Renderer)
+def watch(watched: Folder) -> HotReload:
+    made = HotReload(watched.path / "project.xml", nau_py.load, Renderer)
     assert shown(made.start()) == [200, 200, 200]
-    assert made.changed() == {}
+    assert made.watch.take_changes() == {}
     return made
 
 
-def test_a_shader(watched: Folder, watch: Watch) -> None:
+def test_a_shader(watched: Folder, watch: HotReload) -> None:
     """It alone is exchanged: the renderer stays. A second change counts as well."""
     before = watch.renderer
     change(watched, "a.frag", "vec4(1.0, 1.0", "vec4(0.5, 1.0")
@@ -116,7 +116,7 @@ def test_a_shader(watched: Folder, watch: Watch) -> None:
     assert watch.renderer is before
 
 
-def test_a_ray_program_of_the_same_size(watched: Folder, watch: Watch) -> None:
+def test_a_ray_program_of_the_same_size(watched: Folder, watch: HotReload) -> None:
     """Twice in one second and of one size: no bytecode of the version before, and none is left."""
     before = watch.renderer
     change(watched, "mine.py", "1.0", "0.5")
@@ -142,7 +142,7 @@ def test_a_ray_program_of_the_same_size(watched: Folder, watch: Watch) -> None:
     ids=["texture", "material file", "model", "library", "project"],
 )
 def test_any_other_file(
-    watched: Folder, watch: Watch, alter: Callable[[Folder], None], expected: list[int]
+    watched: Folder, watch: HotReload, alter: Callable[[Folder], None], expected: list[int]
 ) -> None:
     alter(watched)
     assert after(watch) == expected
@@ -161,26 +161,26 @@ def test_any_other_file(
     ],
 )
 def test_what_is_wrong_is_said_and_mended(
-    watched: Folder, watch: Watch, name: str, old: str, new: str, words: str
+    watched: Folder, watch: HotReload, name: str, old: str, new: str, words: str
 ) -> None:
     """The renderer of the last good picture stays; after mending the picture is right again."""
     good = watch.renderer
     text = (watched.path / name).read_text()
     change(watched, name, old, new)
     with pytest.raises(nau_py.NauError) as caught:
-        watch.render(watch.changed())
+        watch.render(watch.watch.take_changes())
     assert words in str(caught.value)
     assert watch.renderer is good
     (watched.path / name).write_text(text)
     assert after(watch) == [200, 200, 200]
 
 
-def test_a_project_that_is_gone_and_comes_back(watched: Folder, watch: Watch) -> None:
+def test_a_project_that_is_gone_and_comes_back(watched: Folder, watch: HotReload) -> None:
     file = watched.path / "project.xml"
     text = file.read_text()
     file.unlink()
     with pytest.raises(nau_py.NauError, match=r"project\.xml"):
-        watch.render(watch.changed())
+        watch.render(watch.watch.take_changes())
     file.write_text(text)
     assert after(watch) == [200, 200, 200]
 
@@ -188,14 +188,14 @@ def test_a_project_that_is_gone_and_comes_back(watched: Folder, watch: Watch) ->
 def test_a_project_that_is_wrong_from_the_start(watched: Folder) -> None:
     """Its libraries' and its own files are followed all the same."""
     change(watched, "lib.mlib", 'name="show" vs', 'name="shown" vs')
-    made = Watch(watched.path / "project.xml", nau_py.load, Renderer)
+    made = HotReload(watched.path / "project.xml", nau_py.load, Renderer)
     with pytest.raises(nau_py.ProjectError):
         made.start()
     change(watched, "lib.mlib", 'name="shown" vs', 'name="show" vs')
     assert after(made) == [200, 200, 200]
 
 
-def test_files_that_a_change_brings_are_followed(watched: Folder, watch: Watch) -> None:
+def test_files_that_a_change_brings_are_followed(watched: Folder, watch: HotReload) -> None:
     watched.write("b.frag", FRAGMENT.replace("vec4(1.0,", "vec4(0.5,"))
     change(watched, "lib.mlib", 'ps="a.frag"', 'ps="b.frag"')
     assert after(watch) == [100, 200, 200]

@@ -17,10 +17,9 @@ import uvicorn
 from websockets.sync.client import ClientConnection, connect
 
 from nau_py.passes.frame import RunOptions
-from nau_py.process.renderer_child import Child
-from nau_py.viewer.desk import Desk
-from nau_py.viewer.director import Director
+from nau_py.viewer.render_thread import RenderThread, make_worker
 from nau_py.viewer.server import make_app
+from nau_py.viewer.state import ViewerState
 
 TOKEN = "token-of-the-tests"
 SECONDS = 60.0
@@ -30,15 +29,16 @@ class Served:
     """``root`` is the page's address."""
 
     def __init__(self, project: Path, limit: float = SECONDS) -> None:
-        self.desk = Desk(project)
-        self.director = Director(self.desk, Child(self.desk.path, RunOptions(threads=2), limit))
+        self.state = ViewerState(project)
+        self.worker = make_worker(self.state.path, RunOptions(threads=2), limit)
+        self.render_thread = RenderThread(self.state, self.worker)
         self.listening = socket.socket()
         self.listening.bind(("127.0.0.1", 0))
         self.listening.listen()
         self.port = self.listening.getsockname()[1]
         self.root = f"http://127.0.0.1:{self.port}/{TOKEN}/"
         config = uvicorn.Config(
-            make_app(self.desk, self.director, TOKEN),
+            make_app(self.state, self.render_thread, TOKEN),
             log_level="error",
             ws="websockets-sansio",
             timeout_graceful_shutdown=1,

@@ -233,7 +233,7 @@ def test_a_save_that_is_refused_is_said_and_loses_nothing(
         window.do(do="save")
         window.until(lambda w: bool(w.refused))
         assert "project.xml' cannot be written: Read-only file system" in window.refused[0]
-        assert served.desk.values == {"LIGHT|Sun|COLOR": (0.5, 0.0, 0.0, 1.0)}
+        assert served.state.values == {"LIGHT|Sun|COLOR": (0.5, 0.0, 0.0, 1.0)}
         monkeypatch.undo()
         assert project.read_bytes() == before
         window.do(do="save")

@@ -15,6 +15,8 @@ from llvmlite import ir
 from numba import cfunc, njit, types
 from numba.extending import intrinsic
 
+from nau_py.process.cache_folder import make_cache_folder
+
 F = TypeVar("F", bound=Callable[..., object])
 V3 = tuple[float, float, float]
 
@@ -27,13 +29,8 @@ def _cache_folder() -> str:
     digest = hashlib.sha256()
     for file in sorted(Path(__file__).parents[1].rglob("*.py")):
         digest.update(file.read_bytes())
-    base = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
-    folder = Path(base) / "nau_py" / f"kernels-{digest.hexdigest()[:16]}"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return ""
-    return str(folder) if os.access(folder, os.W_OK) else ""
+    folder = make_cache_folder(f"kernels-{digest.hexdigest()[:16]}")
+    return "" if folder is None else str(folder)
 
 
 _FOLDER = os.environ.get("NUMBA_CACHE_DIR") or _cache_folder()

@@ -1,4 +1,4 @@
-"""What every window of the viewer sees, and the commands that change it."""
+"""State of the viewer that every window shares, and the commands that change it."""
 
 from __future__ import annotations
 
@@ -10,33 +10,32 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.api import lint, load, plan
+from nau_py.api import lint, load
 from nau_py.diagnostics.diagnostic import Diagnostic, Severity
-from nau_py.diagnostics.errors import NauError
-from nau_py.diagnostics.reporters import format_lines
-from nau_py.model.effects import EFFECTS
 from nau_py.model.effects import wanted as effects_wanted
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
 from nau_py.model.project import ProjectFile
 from nau_py.model.values import Scalar
+from nau_py.process.file_watch import FileWatch
 from nau_py.process.paths import forget_folders
-from nau_py.run.reload import Stamp, stamp
-from nau_py.run.renderer import DEFAULT_TIME_STEP
 from nau_py.run.used_files import used_files
 from nau_py.viewer import orbit
 from nau_py.viewer.camera import aims_from_position, camera_node, camera_with
-from nau_py.viewer.controls import Control, Values, controls, key_of, model_material
-from nau_py.viewer.graph import EMPTY_GRAPH, graph_data
+from nau_py.viewer.controls import Control, Values, check_value, controls, key_of, model_material
+from nau_py.viewer.request import PictureRequest, PictureStep, SceneSummary
 from nau_py.viewer.save import save_edits
-from nau_py.viewer.studio import Facts, Shown, Wanted
 
 MOST_UNDO = 200
+"""Steps of undo that are kept."""
 
 
-class Desk:
-    """The state of a viewer. ``changed`` is called, by any thread, when there is something new.
-    ``size``: the window's (width, height), in the place of the project's."""
+class ViewerState:
+    """Project, changed values and last picture of a viewer.
+
+    ``changed`` is called, by any thread, after every change. ``size``: the window's (width,
+    height) instead of the project's.
+    """
 
     def __init__(self, path: Path, size: tuple[int, int] | None = None) -> None:
         self.path = path.resolve()
@@ -45,36 +44,35 @@ class Desk:
         self.lock = threading.RLock()
         self.project = Project(self.path, ProjectFile())
         self.sources: dict[str, str] = {}
-        """Texts of the files as they were read last, for the excerpts of findings."""
+        """Texts of the files as last read, for the excerpts of diagnostics."""
         self.pipeline = ""
         self.frame = 0
         self.playing = False
         self.effects: str | None = None
         self.values: Values = {}
-        """What was changed and is not saved."""
+        """Changed values that are not saved."""
         self.undo: list[Values] = []
-        """What each change has replaced, the last one last. Saving leaves it as it is."""
+        """Values before each change, the last one last. Saving keeps them."""
         self.findings: list[Diagnostic] = []
-        self.wrong: list[Diagnostic] = []
-        """What the renderer found wrong, beside lint."""
+        self.render_diagnostics: list[Diagnostic] = []
+        """Diagnostics of the renderer; lint's are in ``findings``."""
         self.note = ""
-        self.picture: Shown | None = None
-        self.facts: Facts | None = None
+        self.picture: PictureStep | None = None
+        self.scene: SceneSummary | None = None
         self.version, self.pictures, self.full, self.attempt = 0, 0, 0, 0
-        """Counts: changes of what windows see, pictures, first ones of full size, and states of
-        the files."""
+        """Counts: changes that windows show, pictures, first ones of full size, states of the
+        files."""
         self.failed = self.saved = False
-        """Whether the last picture failed; whether a save has changed the renderer's files."""
+        """True if the last picture failed; True after a save changed the worker's files."""
         self.moved = 0.0
-        """When something was changed last (monotonic clock)."""
+        """Time of the last change (monotonic clock)."""
         self._distance: float | None = None
-        self._stamps: dict[Path, Stamp] = {}
-        self._kinds: dict[Path, str] = {}
+        self.watch = FileWatch()
         self.reload()
 
     def reload(self) -> None:
-        """Read the project again. A wrong one is told, the last sound one stays. What was changed
-        stays changed, where it still exists."""
+        """Read the project again; keep the last sound one if it has errors. Changed values of
+        controls that still exist stay changed."""
         forget_folders()
         project = load(self.path)
         found = lint(project)
@@ -88,34 +86,23 @@ class Desk:
                 known = {c.key for c in self.controls()}
                 self.values = {k: v for k, v in self.values.items() if k in known}
             kinds = used_files(project)
-            self._kinds = self._kinds | kinds if not self.sound else kinds
-            self._stamps = {p: self._stamps.get(p, stamp(p)) for p in self._kinds}
-        self.news()
+            self.watch.follow(kinds if self.sound else self.watch.kinds | kinds)
+        self.announce()
 
     @property
     def sound(self) -> bool:
-        """Whether the project can be run."""
+        """True if the project can be run."""
         return not any(d.severity is Severity.ERROR for d in self.findings)
 
-    def look(self) -> dict[str, str]:
-        """The files that have changed since the last look: path to kind."""
-        found = {p: k for p, k in self._kinds.items() if stamp(p) != self._stamps[p]}
-        for path in found:
-            self._stamps[path] = stamp(path)
-        return {str(p): k for p, k in found.items()}
-
-    def stale(self) -> bool:
-        """Whether :meth:`look` would find something."""
-        return any(stamp(p) != known for p, known in list(self._stamps.items()))
-
-    def wanted(self) -> Wanted:
+    def picture_request(self) -> PictureRequest:
+        """Return the request of the present picture."""
         values = tuple(sorted(self.values.items()))
-        return Wanted(self.pipeline, self.frame, values, self.effects, self.size)
+        return PictureRequest(self.pipeline, self.frame, values, self.effects, self.size)
 
     def controls(self) -> list[Control]:
         pipeline = self.project.pipeline(self.pipeline) or Pipeline()
         found = controls(self.project, pipeline)
-        for name, colours in (self.facts.materials if self.facts else {}).items():
+        for name, colours in (self.scene.materials if self.scene else {}).items():
             found += model_material(self.project, name, colours)
         return found
 
@@ -125,7 +112,7 @@ class Desk:
         return next((c.value for c in self.controls() if c.key == key), None)
 
     def do(self, command: dict[str, Any]) -> None:
-        """Carry out what a window asks. Raises :class:`ValueError` that says what is wrong."""
+        """Carry out a command of a window. Raises :class:`ValueError` with the reason."""
         name = command.get("do")
         method = getattr(self, f"_do_{name}", None)
         if not isinstance(name, str) or method is None:
@@ -135,17 +122,17 @@ class Desk:
                 method(command)
         except (KeyError, TypeError, OverflowError) as problem:
             raise ValueError(f"command '{name}': {problem}") from None
-        self.news()
+        self.announce()
 
     def _do_set(self, command: dict[str, Any]) -> None:
         key, parts = str(command["key"]), command["value"]
         control = next((c for c in self.controls() if c.key == key), None)
         if control is None:
             raise ValueError(f"there is nothing called '{key}' to set")
-        self._change({key: checked(control, parts)}, bool(command.get("more")))
+        self._change({key: check_value(control, parts)}, bool(command.get("more")))
 
     def _change(self, values: Values, more: bool = False) -> None:
-        """Change values; ``more``: they belong to the change before, one step of undo."""
+        """Change values; ``more``: undo them together with the change before."""
         plain = {c.key: c.value for c in self.controls()}
         before = {key: self.values.get(key, plain[key]) for key in values}
         if more and self.undo:
@@ -156,7 +143,7 @@ class Desk:
         self._put_values(values, plain)
 
     def _put_values(self, values: Values, plain: Values) -> None:
-        """Set values; those that the files have are no changes."""
+        """Set values; a value that equals the file's is no change."""
         self.values = {k: v for k, v in (self.values | values).items() if plain.get(k) != v}
         self.moved = monotonic()
 
@@ -185,7 +172,7 @@ class Desk:
         self._put(moves[how](pose, *by), bool(command.get("more")))
 
     def camera(self) -> str:
-        """The name of the camera that moves: the pipeline's, or that of its first pass."""
+        """Return the name of the camera that moves: the pipeline's, or that of its first pass."""
         pipeline = self.project.pipeline(self.pipeline)
         if pipeline is None:
             raise ValueError("there is no pipeline")
@@ -197,7 +184,7 @@ class Desk:
         return found
 
     def pose(self) -> orbit.Pose:
-        """Where the camera is. Raises :class:`ValueError` where the pipeline names none."""
+        """Return the pose of the camera. Raises :class:`ValueError` if the pipeline names none."""
         name = self.camera()
         state = camera_with(self.project, name, self.values)
         node = camera_node(self.project, name)
@@ -209,10 +196,10 @@ class Desk:
         return orbit.pose(state.position, state.view, state.up, distance or self.extent() / 2)
 
     def extent(self) -> float:
-        """The length of the scene's diagonal, world units."""
-        if self.facts is None:
+        """Return the length of the scene's diagonal, world units."""
+        if self.scene is None:
             return 10.0
-        return float(np.linalg.norm(np.subtract(self.facts.high, self.facts.low))) or 1.0
+        return float(np.linalg.norm(np.subtract(self.scene.high, self.scene.low))) or 1.0
 
     def _put(self, pose: orbit.Pose, more: bool) -> None:
         name = self.camera()
@@ -248,10 +235,10 @@ class Desk:
 
     def _do_retry(self, _: dict[str, Any]) -> None:
         self.attempt += 1
-        self.wrong, self.note = [], ""
+        self.render_diagnostics, self.note = [], ""
 
     def _do_save(self, _: dict[str, Any]) -> None:
-        """Write what was changed into the files of the project."""
+        """Write the changed values into the files of the project."""
         try:
             files, left = save_edits(self.project, self.values)
             for path, (document, _edits) in files.items():
@@ -265,119 +252,19 @@ class Desk:
         names = ", ".join(sorted(p.name for p in files))
         self.reload()
         self.values = {k: v for k, v in self.values.items() if k in left}
-        self._stamps = {p: stamp(p) for p in self._kinds}
+        self.watch.accept()
         self.note = f"saved into {names}" if files else "there is nothing that a file holds"
         if left:
             held = ", ".join(f"'{k}'" for k in left)
             self.note += f"; no file of the project holds {held}"
         self.saved = True
 
-    def news(self, content: bool = True) -> None:
+    def announce(self, content: bool = True) -> None:
+        """Call ``changed``. ``content``: more than the picture has changed."""
         with self.lock:
             self.version += content
         self.changed()
 
-    def glance(self) -> dict[str, Any]:
-        """The picture's figures: what changes with every step."""
-        with self.lock:
-            shown = self.picture
-            if shown is None:
-                return {"pictures": 0}
-            return {
-                "pictures": self.pictures,
-                "width": shown.width,
-                "height": shown.height,
-                "coarse": shown.coarse,
-                "steps": shown.steps,
-                "spp": shown.spp,
-                "error": shown.error,
-                "ms": shown.ms,
-                "frame": self.frame,
-            }
-
-    def content(self) -> dict[str, Any]:
-        """Everything else that a window shows."""
-        with self.lock:
-            project, report = self.project, self.picture.report if self.picture else None
-            effects = {
-                "chosen": self.effects or "",
-                "known": ["auto", "all", "none", *EFFECTS],
-                "decisions": (report or {}).get("effects", []),
-            }
-            try:
-                pose = [*map(float, self.pose().position), *map(float, self.pose().view)]
-            except ValueError:
-                pose = []
-            return {
-                "version": self.version,
-                "full": self.full,
-                "project": project.name,
-                "file": str(self.path),
-                "pipelines": [p.name for p in project.pipelines],
-                "pipeline": self.pipeline,
-                "sound": self.sound,
-                "frame": self.frame,
-                "step": DEFAULT_TIME_STEP,
-                "playing": self.playing,
-                "effects": effects,
-                "controls": [
-                    c.data() | {"value": self.values.get(c.key, c.value), "file": c.value}
-                    for c in self.controls()
-                ],
-                "changed": sorted(self.values),
-                "undo": len(self.undo),
-                "diagnostics": [self._told(d) for d in self._all()],
-                "note": self.note,
-                "graph": self._graph(report),
-                "targets": self.picture.targets if self.picture else [],
-                "pose": pose,
-                "rendering": self.sound and not self.failed,
-            }
-
-    def _all(self) -> list[Diagnostic]:
-        return list(dict.fromkeys([*self.wrong, *self.findings]))
-
-    def _told(self, diagnostic: Diagnostic) -> dict[str, Any]:
-        lines = format_lines(diagnostic, self.sources)
-        return {
-            "rule": diagnostic.rule,
-            "severity": str(diagnostic.severity),
-            "place": str(diagnostic.location) if diagnostic.location.file else "",
-            "message": diagnostic.message,
-            "source": lines[1:],
-        }
-
-    def _graph(self, report: dict[str, Any] | None) -> dict[str, Any]:
-        try:
-            return graph_data(plan(self.project, self.pipeline), report)
-        except NauError:
-            return EMPTY_GRAPH
-
 
 def _rounded(vector: orbit.F64) -> tuple[float, ...]:
     return tuple(round(float(v), 5) for v in vector)
-
-
-def checked(control: Control, parts: Any) -> tuple[Scalar, ...]:
-    """A value for a control. Raises :class:`ValueError` that says what is legal."""
-    listed = list(parts) if isinstance(parts, list | tuple) else [parts]
-    if len(listed) != len(control.value):
-        raise ValueError(f"{control.label} takes {len(control.value)} values, not {len(listed)}")
-    if control.kind == "choice":
-        if listed[0] not in control.choices:
-            raise ValueError(f"{control.label} is one of {', '.join(control.choices)}")
-        return (str(listed[0]),)
-    if control.kind == "flag":
-        return (bool(listed[0]),)
-    found: list[Scalar] = []
-    for part in listed:
-        number = float(part)
-        if not np.isfinite(number):
-            raise ValueError(f"{control.label}: {part} is not finite")
-        low, high = control.minimum, control.maximum
-        if (low is not None and number < low) or (high is not None and number > high):
-            least = "" if low is None else f" from {low:g}"
-            most = "" if high is None else f" to {high:g}"
-            raise ValueError(f"{control.label} is {number:g}; legal is{least}{most}")
-        found.append(int(number) if control.kind == "whole" else number)
-    return tuple(found)

@@ -1,4 +1,4 @@
-"""The studio's pictures against nau-run's of the same project, saved."""
+"""Pictures of the worker against nau-run's of the same project, saved."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ from PIL import Image
 
 import nau_py
 from nau_py.passes.frame import RunOptions
+from nau_py.process.worker import RequestCancelled
 from nau_py.viewer.camera import camera_with
 from nau_py.viewer.controls import Values
-from nau_py.viewer.desk import Desk
+from nau_py.viewer.request import PictureRequest
 from nau_py.viewer.save import save_edits
-from nau_py.viewer.studio import Cancelled, Studio, Wanted
+from nau_py.viewer.state import ViewerState
+from nau_py.viewer.worker import RenderWorker
 from tests.conftest import LAMBERT, Folder, RayProject
 
 Pixels = np.ndarray[Any, Any]
@@ -49,8 +51,8 @@ def pixels(data: bytes) -> Pixels:
     return np.asarray(Image.open(io.BytesIO(data)))
 
 
-def wanted(values: Values, **more: Any) -> Wanted:
-    return Wanted("P", values=tuple(sorted(values.items())), **more)
+def request(values: Values, **more: Any) -> PictureRequest:
+    return PictureRequest("P", values=tuple(sorted(values.items())), **more)
 
 
 CHANGES: list[Values] = [
@@ -65,11 +67,11 @@ CHANGES: list[Values] = [
 def test_what_is_shown_is_what_saving_gives(scene: Path, values: Values) -> None:
     """The changed picture is that of the saved project to the bit; undone, that of the old."""
     before = nau_py.Renderer(nau_py.load(scene)).render().image
-    studio = Studio(scene, RunOptions(), quiet)
-    studio.render(wanted({}), False)
-    changed = pixels(studio.render(wanted(values), False).png)
-    back = pixels(studio.render(wanted({}), False).png)
-    studio.close()
+    worker = RenderWorker(scene, RunOptions(), quiet)
+    worker.render(request({}), False)
+    changed = pixels(worker.render(request(values), False).png)
+    back = pixels(worker.render(request({}), False).png)
+    worker.close()
     files, left = save_edits(nau_py.load(scene), values)
     assert left == []
     for path, (document, edits) in files.items():
@@ -85,29 +87,29 @@ def test_what_is_shown_is_what_saving_gives(scene: Path, values: Values) -> None
 
 
 def test_a_material_of_a_model_can_be_tried(scene: Path) -> None:
-    studio = Studio(scene, RunOptions(), quiet)
-    studio.render(wanted({}), False)
-    facts = studio.facts()
+    worker = RenderWorker(scene, RunOptions(), quiet)
+    worker.render(request({}), False)
+    facts = worker.summarize_scene()
     assert facts.materials["__nau_material_lib::Red"]["DIFFUSE"][:3] == pytest.approx((0.8, 0, 0))
     assert facts.low == pytest.approx((-3, -1, -3))
     assert facts.high == pytest.approx((3, 1, 3))
     key = "COLOR|__nau_material_lib::Red|DIFFUSE"
-    green = pixels(studio.render(wanted({key: (0.0, 0.5, 0.0, 1.0)}), False).png)[24, 32]
+    green = pixels(worker.render(request({key: (0.0, 0.5, 0.0, 1.0)}), False).png)[24, 32]
     assert green[1] > 50
     assert green[0] == 0
-    studio.close()
+    worker.close()
 
 
 def test_steps_converge_with_the_error_that_is_said(scene: Path) -> None:
     """Of a picture whose edges are noisy, the mean of sixteen steps is nearer to that of many."""
-    studio = Studio(scene, RunOptions(), quiet)
-    shown = [studio.render(wanted({}), False) for _ in range(16)]
+    worker = RenderWorker(scene, RunOptions(), quiet)
+    shown = [worker.render(request({}), False) for _ in range(16)]
     assert [s.spp for s in shown] == [2 * (i + 1) for i in range(16)]
     errors = [s.error for s in shown]
     assert errors[15] is not None
     assert errors[0] is not None
     assert errors[15] == pytest.approx(errors[0] / 4, rel=0.5)
-    studio.close()
+    worker.close()
     many = nau_py.Renderer(nau_py.load(scene), options=RunOptions(samples=1024, seed=99)).render()
     truth = np.clip(many.image[:, :, :3], 0, 1)
 
@@ -118,24 +120,24 @@ def test_steps_converge_with_the_error_that_is_said(scene: Path) -> None:
 
 
 def test_a_coarse_picture_is_small_and_of_one_sample(scene: Path) -> None:
-    studio = Studio(scene, RunOptions(), quiet)
-    shown = studio.render(wanted({}, size=(640, 480)), True)
+    worker = RenderWorker(scene, RunOptions(), quiet)
+    shown = worker.render(request({}, size=(640, 480)), True)
     assert (shown.width, shown.height) == (16, 12)  # the target's 64 x 48, a quarter
     assert shown.spp == 1
     assert not shown.more
-    studio.close()
+    worker.close()
 
 
 def test_frames_forth_and_back(scene: Path) -> None:
-    studio = Studio(scene, RunOptions(), quiet)
-    first = pixels(studio.render(wanted({}), False).png)
-    third = pixels(studio.render(wanted({}, frame=3), False).png)
-    again = pixels(studio.render(wanted({}), False).png)
+    worker = RenderWorker(scene, RunOptions(), quiet)
+    first = pixels(worker.render(request({}), False).png)
+    third = pixels(worker.render(request({}, frame=3), False).png)
+    again = pixels(worker.render(request({}), False).png)
     assert (first == again).all()
     renderer = nau_py.Renderer(nau_py.load(scene))
     image = np.rint(np.clip(renderer.render(3).image[:, :, :3], 0, 1) * 255)
     assert (third == image).all()
-    studio.close()
+    worker.close()
 
 
 def test_a_picture_that_is_cancelled_leaves_nothing_behind(scene: Path) -> None:
@@ -143,16 +145,16 @@ def test_a_picture_that_is_cancelled_leaves_nothing_behind(scene: Path) -> None:
 
     def tell(name: str, done: int, total: int) -> None:
         if stop:
-            raise Cancelled
+            raise RequestCancelled
 
-    studio = Studio(scene, RunOptions(), tell)
-    first = studio.render(wanted({}), False).png
+    worker = RenderWorker(scene, RunOptions(), tell)
+    first = worker.render(request({}), False).png
     stop = True
-    with pytest.raises(Cancelled):
-        studio.render(wanted(CHANGES[0]), False)
+    with pytest.raises(RequestCancelled):
+        worker.render(request(CHANGES[0]), False)
     stop = False
-    assert (pixels(studio.render(wanted({}), False).png) == pixels(first)).all()
-    studio.close()
+    assert (pixels(worker.render(request({}), False).png) == pixels(first)).all()
+    worker.close()
 
 
 def test_look_at_point_before_position(scene: Path) -> None:
@@ -160,15 +162,15 @@ def test_look_at_point_before_position(scene: Path) -> None:
     text = scene.read_text()
     place, look = '<POSITION x="0" y="0" z="3" />', '<LOOK_AT_POINT x="0" y="0" z="0" />'
     scene.write_text(text.replace(place + look, look.replace('z="0"', 'z="-3"') + place))
-    desk = Desk(scene)
-    assert desk.pose().view == pytest.approx((0, 0, -1))
-    assert desk.pose().distance == pytest.approx(3)
-    desk.do({"do": "move", "how": "orbit", "by": [0.5, 0.2]})
-    pose = desk.pose()
+    viewer = ViewerState(scene)
+    assert viewer.pose().view == pytest.approx((0, 0, -1))
+    assert viewer.pose().distance == pytest.approx(3)
+    viewer.do({"do": "move", "how": "orbit", "by": [0.5, 0.2]})
+    pose = viewer.pose()
     assert np.linalg.norm(pose.position) == pytest.approx(3, rel=1e-4)  # about the same pivot
     assert pose.view == pytest.approx(-pose.position / 3, abs=1e-4)
-    state = camera_with(desk.project, "C", desk.values)
+    state = camera_with(viewer.project, "C", viewer.values)
     assert state is not None
     assert state.forward == pytest.approx(pose.view)
-    desk.do({"do": "undo"})
-    assert desk.pose().position == pytest.approx((0, 0, 3))
+    viewer.do({"do": "undo"})
+    assert viewer.pose().position == pytest.approx((0, 0, 3))
