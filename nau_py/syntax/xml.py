@@ -15,7 +15,19 @@ from nau_py.diagnostics.location import Location
 from nau_py.diagnostics.problem import Problem, ProblemKind
 from nau_py.syntax.element import Element
 from nau_py.syntax.parse_error import ParseError
-from nau_py.syntax.xml_tokens import Token, TokenKind, decode, is_name, tokenise
+from nau_py.syntax.xml_tokens import (
+    CLOSE,
+    CLOSE_EMPTY,
+    EQUALS,
+    NAME,
+    SPACE,
+    VALUE,
+    Token,
+    TokenKind,
+    decode,
+    is_name,
+    tokenise_groups,
+)
 
 _INDENT = "  "
 _WIDTH = 100
@@ -39,7 +51,6 @@ class _Parser:
     def __init__(self, text: str, file: str) -> None:
         self.text = text
         self.file = file
-        self.tokens = tokenise(text)
         self.lines = [0] + [found.end() for found in re.finditer("\n", text)]
         self.open: list[Element] = []
         self.stray: list[Problem] = []
@@ -47,8 +58,8 @@ class _Parser:
 
     def parse(self, problems: list[Problem]) -> Element:
         """Read up to the end of the root element."""
-        for token in self.tokens:
-            root = self._take(token)
+        for tokens in tokenise_groups(self.text):
+            root = self._take(tokens)
             if root is not None:
                 problems += self.stray
                 return root
@@ -58,15 +69,16 @@ class _Parser:
             raise ParseError(element.location, message)
         raise self._error(0, "the document is empty: it has no root element")
 
-    def _take(self, token: Token) -> Element | None:
-        """Take one token between tags. Return the root element when it ends here."""
+    def _take(self, tokens: list[Token]) -> Element | None:
+        """Take one tag, or one token between tags. Return the root element when it ends here."""
+        token = tokens[0]
         kind = token.kind
         if kind is TokenKind.TEXT:
             self._take_text(token)
         elif kind is TokenKind.START:
-            return self._take_start_tag(token)
+            return self._take_start_tag([t for t in tokens if t.kind is not SPACE])
         elif kind is TokenKind.END:
-            return self._take_end_tag(token)
+            return self._take_end_tag(token, tokens[-1])
         elif kind is TokenKind.COMMENT and not token.closed:
             raise self._error(token.offset + 4, "the comment is not closed: no '-->' follows")
         elif kind is TokenKind.DECLARATION and not token.closed:
@@ -83,56 +95,61 @@ class _Parser:
         where = self._location(offset)
         self.stray.append(Problem(ProblemKind.STRAY_TEXT, where, value=words[:60]))
 
-    def _take_end_tag(self, token: Token) -> Element | None:
+    def _take_end_tag(self, token: Token, last: Token) -> Element | None:
         name = self._name(token, 2)
-        following = self._next_solid()
-        while following is not None and following.kind is TokenKind.JUNK:
-            following = self._next_solid()
-        if following is None or following.kind is not TokenKind.CLOSE:
+        if last.kind is not CLOSE:
             raise self._error(token.end, f"end tag </{name} is not closed: no '>' follows")
         if not self.open or self.open[-1].tag != name:
-            last = self.open[-1] if self.open else None
-            opened = f"<{last.tag}> from {last.location}" if last else "nothing"
+            inner = self.open[-1] if self.open else None
+            opened = f"<{inner.tag}> from {inner.location}" if inner else "nothing"
             message = f"end tag </{name}> does not match: {opened} is open"
             raise self._error(token.offset, message)
         element = self.open.pop()
         return None if self.open else element
 
-    def _take_start_tag(self, token: Token) -> Element | None:
-        element = Element(self._name(token, 1), location=self._location(token.offset))
+    def _take_start_tag(self, tokens: list[Token]) -> Element | None:
+        """Take a start tag, given without its white space."""
+        first, last = tokens[0], tokens[-1]
+        element = Element(self._name(first, 1), location=self._location(first.offset))
         if len(self.open) == _MOST_LEVELS:
             raise ParseError(element.location, "elements are nested too deeply")
-        while True:
-            following = self._next_solid()
-            if following is None:
-                message = f"start tag <{element.tag} is not closed: no '>' follows"
-                raise ParseError(element.location, message)
-            if following.kind is TokenKind.CLOSE or following.kind is TokenKind.CLOSE_EMPTY:
-                break
-            self._take_attribute(element, following)
+        closed = last.kind is CLOSE or last.kind is CLOSE_EMPTY
+        for index in range(1, len(tokens) - closed, 3):
+            self._take_attribute(element, tokens, index)
+        if not closed:
+            raise self._unfinished(element, last.end)
         if self.open:
             self.open[-1].children.append(element)
-        if following.kind is TokenKind.CLOSE:
+        if last.kind is CLOSE:
             self.open.append(element)
         return None if self.open else element
 
-    def _take_attribute(self, element: Element, token: Token) -> None:
-        name, tag = token.text, element.tag
-        if token.kind is not TokenKind.NAME or not is_name(name):
+    def _unfinished(self, element: Element, end: int) -> ParseError:
+        """Return the error of a start tag that another tag, or the end of the text, cuts off."""
+        rest = len(self.text[end:]) - len(self.text[end:].lstrip())
+        if end + rest < len(self.text):
+            return self._unexpected(end + rest, f"attribute name in <{element.tag}>")
+        message = f"start tag <{element.tag} is not closed: no '>' follows"
+        return ParseError(element.location, message)
+
+    def _take_attribute(self, element: Element, tokens: list[Token], index: int) -> None:
+        """Take the name, the equals sign and the value at ``index``."""
+        token, tag = tokens[index], element.tag
+        name = token.text
+        if token.kind is not NAME or not is_name(name):
             raise self._unexpected(token.offset, f"attribute name in <{tag}>")
         if name in element.attributes:
             raise self._error(token.offset, f"attribute '{name}' of <{tag}> is given twice")
-        equals = self._next_solid()
-        if equals is None or equals.kind is not TokenKind.EQUALS:
+        if index + 1 == len(tokens) or tokens[index + 1].kind is not EQUALS:
             message = f"attribute '{name}' of <{tag}> has no value ('=' expected)"
             raise self._error(token.offset, message)
-        value = self._next_solid()
-        if value is None or value.kind is not TokenKind.VALUE:
-            offset = len(self.text) if value is None else value.offset
+        if index + 2 == len(tokens) or tokens[index + 2].kind is not VALUE:
+            offset = tokens[index + 2].offset if index + 2 < len(tokens) else len(self.text)
             raise self._error(offset, f"attribute '{name}' of <{tag}> has no value")
+        value = tokens[index + 2]
         offset, raw = value.offset, value.text
         if raw[0] in "\"'":
-            if not value.closed:
+            if len(raw) == 1 or raw[-1] != raw[0]:
                 raise self._error(offset, f"{_subject(name, tag)} has no closing {raw[0]}")
             offset, raw = offset + 1, raw[1:-1]
         elif '"' in raw or "'" in raw:
@@ -149,13 +166,6 @@ class _Parser:
         if not is_name(name):
             raise self._unexpected(token.offset + marks, "element name")
         return name
-
-    def _next_solid(self) -> Token | None:
-        """Return the next token that is not white space; None at the end of the text."""
-        for token in self.tokens:
-            if token.kind is not TokenKind.SPACE:
-                return token
-        return None
 
     def _unexpected(self, offset: int, expected: str) -> ParseError:
         found = self.text[offset : offset + 12]

@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from nau_py.syntax.xml_tokens import Token, TokenKind, tokenise
+from nau_py.syntax.xml_tokens import Token, TokenKind, tokenise_groups
 
-_BEGINS = (TokenKind.START, TokenKind.END, TokenKind.COMMENT, TokenKind.DECLARATION)
 _BETWEEN = (TokenKind.TEXT, TokenKind.MARK)
 
 
@@ -90,17 +89,8 @@ class TokenGroup:
         return found
 
 
-def split_markup(text: str, begin: int = 0) -> Iterator[TokenGroup]:
-    """Return the tags, comments and declarations of ``text`` from ``begin`` on, in order.
-
-    ``begin`` must not be inside of a tag.
-    """
-    group: list[Token] = []
-    for token in tokenise(text, begin):
-        if group and (token.kind in _BEGINS or token.kind in _BETWEEN):
-            yield TokenGroup(tuple(group))
-            group = []
-        if token.kind not in _BETWEEN:
-            group.append(token)
-    if group:
-        yield TokenGroup(tuple(group))
+def split_markup(text: str) -> Iterator[TokenGroup]:
+    """Return the tags, comments and declarations of ``text``, in order."""
+    for tokens in tokenise_groups(text):
+        if tokens[0].kind not in _BETWEEN:
+            yield TokenGroup(tuple(tokens))
