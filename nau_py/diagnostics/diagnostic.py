@@ -68,8 +68,10 @@ class Diagnostic:
 
 
 def error(rule: str, location: Location, message: str, fixes: tuple[Fix, ...] = ()) -> Diagnostic:
+    """Make a diagnostic that stops a run."""
     return Diagnostic(rule, Severity.ERROR, location, message, fixes=fixes)
 
 
 def warning(rule: str, location: Location, message: str) -> Diagnostic:
+    """Make a diagnostic that does not stop a run."""
     return Diagnostic(rule, Severity.WARNING, location, message)

@@ -57,6 +57,7 @@ class _Definitions:
         self.definitions: dict[str, Schema] = {}
 
     def define(self, cls: type[Node]) -> Schema:
+        """Define a class, if it is new, and return the reference to it."""
         if cls.__name__ not in self.definitions:
             self.definitions[cls.__name__] = {}  # taken: a class may hold itself
             self.definitions[cls.__name__] = self._class(schema_of(cls))

@@ -119,6 +119,7 @@ class Reader:
         )
 
     def declare_all(self, root: Element) -> None:
+        """Add all user attributes of a project file."""
         assets = root.first("assets")
         section = assets.first("attributes") if assets else None
         for child in section.children if section else []:
@@ -126,9 +127,11 @@ class Reader:
                 self.declare(child)
 
     def library(self, path: Path) -> MaterialLibrary | None:
+        """Read a material library. Returns None and adds a problem on failure."""
         return self._bound(path, "materialLib", MaterialLibrary)
 
     def physics(self, path: Path) -> PhysicsLibrary | None:
+        """Read a physics library. Returns None and adds a problem on failure."""
         return self._bound(path, "physicslib", PhysicsLibrary)
 
     def _bound(self, path: Path, tag: str, cls: type[N]) -> N | None:

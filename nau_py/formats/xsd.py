@@ -29,6 +29,7 @@ class _Types:
         self.types: dict[str, str] = {}
 
     def define(self, cls: type[Node]) -> str:
+        """Define the type of a class, if it is new, and return its name."""
         name = cls.__name__
         if name not in self.types:
             self.types[name] = ""

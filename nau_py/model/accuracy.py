@@ -21,7 +21,7 @@ UINT = DataType.UINT
 class Knob(Node):
     """A setting that trades accuracy for time, and the values to measure."""
 
-    name: Annotated[str | None, Attr(doc="Knob, or what it turns.", required=True)] = None
+    name: Annotated[str | None, Attr(doc="Short name, or path of a number.", required=True)] = None
     values: Annotated[str | None, Attr(doc="Values, cheapest first.", required=True)] = None
 
 

@@ -41,6 +41,7 @@ class AttributeSet:
 
     @classmethod
     def of(cls, type_: str, attributes: Iterable[Attribute]) -> AttributeSet:
+        """Make the set of an object type."""
         return cls(type_, {attribute.name: attribute for attribute in attributes})
 
     def __contains__(self, name: str) -> bool:
@@ -50,42 +51,51 @@ class AttributeSet:
         return iter(self.attributes.values())
 
     def get(self, name: str) -> Attribute | None:
+        """Return an attribute, or None for an unknown name."""
         return self.attributes.get(name)
 
     def default(self, name: str) -> tuple[Scalar, ...]:
+        """Return the default of an attribute. Raises KeyError for an unknown name."""
         return self.attributes[name].default
 
     @property
     def writable(self) -> list[str]:
+        """Names of the attributes that a file may write."""
         return [a.name for a in self if not a.readonly and a.type.in_file]
 
     def copy(self) -> AttributeSet:
+        """Copy the set, so that a project can add attributes."""
         return AttributeSet(self.type, dict(self.attributes))
 
 
 def number(name: str, type_: DataType, default: float, doc: str = "", **rest: object) -> Attribute:
+    """Make an attribute with a scalar number. ``rest``: further fields of :class:`Attribute`."""
     return Attribute(name, type_, (default,), doc, **rest)  # type: ignore[arg-type]
 
 
 def flag(name: str, default: bool, doc: str = "", readonly: bool = False) -> Attribute:
+    """Make a BOOL attribute."""
     return Attribute(name, DataType.BOOL, (default,), doc, readonly)
 
 
 def choice(
     name: str, default: str, values: str, doc: str = "", readonly: bool = False
 ) -> Attribute:
+    """Make an ENUM attribute. ``values`` separates the legal values by blanks."""
     return Attribute(name, DataType.ENUM, (default,), doc, readonly, tuple(values.split()))
 
 
 def vector(
     name: str, default: tuple[float, ...], doc: str = "", readonly: bool = False
 ) -> Attribute:
+    """Make a VEC2, VEC3 or VEC4 attribute, by the length of ``default``."""
     return Attribute(name, DataType(f"VEC{len(default)}"), default, doc, readonly)
 
 
 def colour(
     name: str, default: tuple[float, float, float, float], doc: str = "", unit_range: bool = True
 ) -> Attribute:
+    """Make an RGBA attribute. ``unit_range`` limits its components to 0 to 1."""
     limits = (0.0, 1.0) if unit_range else (None, None)
     return Attribute(
         name, DataType.VEC4, default, doc, minimum=limits[0], maximum=limits[1], keys="rgba"
@@ -93,4 +103,5 @@ def colour(
 
 
 def matrix(name: str, doc: str = "", size: int = 4) -> Attribute:
+    """Make a read-only attribute with a matrix of ``size`` rows and columns."""
     return Attribute(name, DataType(f"MAT{size}"), (), doc, readonly=True)

@@ -133,8 +133,8 @@ def _target_of_path(project: Project, passes: list[Pass], name: str) -> KnobTarg
             f"{suggest_name(first, known)}"
         )
     if len(rest) == 1:
-        wanted = [a for a in project.registry["PASS"] if not a.readonly]
-        names = [a.name for a in wanted if a.type.components == 1]
+        writable = [a for a in project.registry["PASS"] if not a.readonly]
+        names = [a.name for a in writable if a.type.components == 1]
         if rest[0] not in names:
             raise LookupError(
                 f"knob '{name}': a pass has no attribute '{rest[0]}' of one component"

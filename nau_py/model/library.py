@@ -44,6 +44,7 @@ class MaterialLibrary(Node):
 
     @property
     def file(self) -> str:
+        """Path of the library file."""
         return self.location.file
 
 

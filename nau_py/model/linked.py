@@ -46,18 +46,22 @@ class Project:
 
     @property
     def name(self) -> str:
+        """Name of the project, or of its file if it has none."""
         return self.file.name or self.path.stem
 
     @property
     def folder(self) -> Path:
+        """Folder of the project file."""
         return self.path.parent
 
     @property
     def assets(self) -> Assets:
+        """The assets; empty if the file has none."""
         return self.file.assets or Assets()
 
     @property
     def pipelines(self) -> list[Pipeline]:
+        """All pipelines in file order."""
         return self.file.pipelines.pipelines if self.file.pipelines else []
 
     @property
@@ -70,16 +74,19 @@ class Project:
 
     @property
     def default_pipeline(self) -> Pipeline | None:
-        wanted = self.file.pipelines.default if self.file.pipelines else None
-        if wanted is not None:
-            return self.pipeline(wanted)
+        """The pipeline to start with: the named one, else the first."""
+        name = self.file.pipelines.default if self.file.pipelines else None
+        if name is not None:
+            return self.pipeline(name)
         return self.pipelines[0] if self.pipelines else None
 
     def pipeline(self, name: str) -> Pipeline | None:
+        """Find a pipeline."""
         return next((p for p in self.pipelines if p.name == name), None)
 
     @property
     def constants(self) -> dict[str, float]:
+        """Values of constants and aliases by name."""
         named = [*self.assets.constants, *self.assets.aliases]
         return {c.name: c.value for c in named if c.name is not None and c.value is not None}
 
@@ -126,19 +133,23 @@ class Project:
         return (lib for lib in self.libraries if lib.name == library)
 
     def material(self, library: str, name: str) -> tuple[MaterialLibrary, Material] | None:
+        """Find a material with its library file."""
         return next(
             ((lib, m) for lib in self._in(library) for m in lib.materials if m.name == name), None
         )
 
     def shader(self, library: str, name: str) -> tuple[MaterialLibrary, Shader] | None:
+        """Find a shader with its library file."""
         return next(
             ((lib, s) for lib in self._in(library) for s in lib.shaders if s.name == name), None
         )
 
     def state(self, library: str, name: str) -> State | None:
+        """Find a state."""
         return next((s for lib in self._in(library) for s in lib.states if s.name == name), None)
 
     def render_target(self, library: str, name: str) -> RenderTarget | None:
+        """Find a render target."""
         return next(
             (t for lib in self._in(library) for t in lib.renderTargets if t.name == name), None
         )

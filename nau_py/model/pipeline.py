@@ -41,6 +41,10 @@ class Pipelines(Node):
         str | None, Attr(doc="Pipeline to start with; else the first.", ref="pipeline")
     ] = None
     mode: Annotated[
-        str | None, Attr(doc="One, or all in turn.", values=("RUN_DEFAULT", "RUN_ALL"))
+        str | None,
+        Attr(
+            doc="The default one, or all in order.",
+            values=("RUN_DEFAULT", "RUN_ALL"),
+        ),
     ] = None
     pipelines: Annotated[list[Pipeline], Items(Pipeline, "pipeline")] = Field(default_factory=list)

@@ -38,10 +38,10 @@ def qualify_reference(
     if attribute.ref in PLAIN_KINDS or ("::" in value and attribute.ref not in _OWN_LIBRARY):
         return value
     given = getattr(node, attribute.library) if attribute.library else None
-    wanted = f"{given or library or DEFAULT_LIBRARY}::{value}"
-    if attribute.ref == "buffer" and wanted not in buffers:
-        wanted = f"{getattr(node, 'fromLibrary', None) or library}::{value}"
-    return wanted
+    qualified = f"{given or library or DEFAULT_LIBRARY}::{value}"
+    if attribute.ref == "buffer" and qualified not in buffers:
+        qualified = f"{getattr(node, 'fromLibrary', None) or library}::{value}"
+    return qualified
 
 
 _ALWAYS = {

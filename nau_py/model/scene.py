@@ -140,5 +140,5 @@ class Scene(Configured):
     )
 
     def has_flag(self, flag: str) -> bool:
-        """Whether ``param`` contains ``flag``."""
+        """Return True if ``param`` contains ``flag``."""
         return flag in (self.param or "")

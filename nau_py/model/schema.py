@@ -58,7 +58,7 @@ class ChildField:
     many: bool
     """True for a list, False for at most one."""
     mixed: bool = False
-    """True if elements of several tags stand in one list, whose order matters."""
+    """True if one list holds elements of several tags, in an order that matters."""
     wrapper: str = ""
     """The element around a list; empty for none."""
     choice: Choice | None = None

@@ -58,4 +58,5 @@ class RenderTarget(Configured):
 
     @property
     def texture_names(self) -> list[str]:
+        """Names of all textures, the hidden depth texture included."""
         return [color.name or "" for color in self.colors] + [self.depth_name]

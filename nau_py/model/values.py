@@ -50,14 +50,17 @@ class DataType(StrEnum):
 
     @cached_property
     def is_integer(self) -> bool:
+        """True for INT, UINT and their vectors."""
         return self.value.startswith(("INT", "IVEC", "UINT", "UIVEC"))
 
     @cached_property
     def is_boolean(self) -> bool:
+        """True for BOOL and its vectors."""
         return self.value.startswith(("BOOL", "BVEC"))
 
     @cached_property
     def is_number(self) -> bool:
+        """True for integers, floats, doubles and their vectors."""
         return self.is_integer or self.value.startswith(("FLOAT", "VEC", "DOUBLE", "DVEC"))
 
     @cached_property

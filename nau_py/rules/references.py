@@ -162,21 +162,21 @@ def _attribute(
     if "::" not in value and given is not None and given not in names.of("library"):
         return  # the library is what is undefined
     buffers = names.of("buffer") if kind == "buffer" else ()
-    wanted = qualify_reference(node, attribute, library, value, buffers)
-    if kind == "material" and wanted.split("::")[0] in list_pass_libraries(context.project):
+    qualified = qualify_reference(node, attribute, library, value, buffers)
+    if kind == "material" and qualified.split("::")[0] in list_pass_libraries(context.project):
         return
     known = names.of(kind)
-    if wanted in known:
+    if qualified in known:
         return
     if (
         kind == "material"
-        and wanted.startswith(f"{DEFAULT_LIBRARY}::")
+        and qualified.startswith(f"{DEFAULT_LIBRARY}::")
         and (context.materials is None or value in context.materials)
     ):
         return
-    home = wanted.split("::")[0]
+    home = qualified.split("::")[0]
     local = [k.split("::", 1)[1] for k in known if k.startswith(f"{home}::")]
-    short = wanted.split("::", 1)[1]
+    short = qualified.split("::", 1)[1]
     yield RULES_BY_KIND[kind].at(
         where,
         f"{what} names the {kind} '{short}' of library '{home}', which is undefined; "
@@ -227,11 +227,11 @@ def check_patterns(context: LintContext) -> Iterator[Diagnostic]:
     for pipeline in context.project.pipelines:
         for pass_ in pipeline.passes:
             listed = [(m, "toMaterial", m.toMaterial) for m in pass_.injectionMaps]
-            wanted: list[tuple[Node, str, str | None]] = [
+            maps: list[tuple[Node, str, str | None]] = [
                 *listed,
                 *((m, "fromMaterial", m.fromMaterial) for m in pass_.materialMaps),
             ]
-            for node, key, pattern in wanted:
+            for node, key, pattern in maps:
                 if pattern and not any(match_pattern(pattern, name) for name in known):
                     own = [k for k in known if not k.startswith("__")]
                     yield R018.at(

@@ -103,8 +103,8 @@ def _diagnostic(p: Problem) -> Diagnostic:
     if p.kind is ProblemKind.LEGACY:
         return X005.at(p.location, f"<{p.element}> is an old spelling: {p.detail}")
     if p.kind is ProblemKind.UNCONVERTIBLE:
-        wanted = _TYPES.get(p.expected, f"a number ({p.expected})")
-        return V001.at(p.location, f"{_place(p)} is '{p.value}'; {wanted} is expected")
+        expected = _TYPES.get(p.expected, f"a number ({p.expected})")
+        return V001.at(p.location, f"{_place(p)} is '{p.value}'; {expected} is expected")
     if p.kind is ProblemKind.TRAILING_TEXT:
         fix = Fix(
             f"Write {p.expected}", (Change(p.location, Part.VALUE, p.value, p.expected),), True

@@ -130,7 +130,7 @@ def check_unknown_names(context: LintContext) -> Iterator[Diagnostic]:
         attributes = schema_of(type(node)).names(context.project.registry)
         for key, value in node.unknown_attributes.items():
             if key in attributes:
-                continue  # its value did not convert: V001 says so
+                continue  # its value did not convert: V001 reports it
             strict = node.tag in _STRICT
             known = (
                 f"; <{node.tag}> takes {format_names(attributes)}{suggest_name(key, attributes)}"
@@ -159,7 +159,7 @@ def _unknown_child(project: Project, node: Node, tag: str, child: Element) -> It
     schema = schema_of(type(node))
     tags = schema.tags(project.registry)
     if tag in tags or schema.setting(tag, project.registry) is not None:
-        return  # repeated or unreadable: X004, V001, V003 or V004 say so
+        return  # repeated or unreadable: X004, V001, V003 or V004 report it
     if isinstance(node, Pass) and tag in project.registry["PASS"]:
         return  # a parameter of another pass class: P007
     written = child.source_tag
