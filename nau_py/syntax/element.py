@@ -22,23 +22,27 @@ class Element:
     location: Location = field(default=NOWHERE, compare=False)
     attribute_locations: dict[str, Location] = field(default_factory=dict, compare=False)
     written: str = field(default="", compare=False)
-    """The tag that stands in the file, where an upgrade gave the element another one."""
+    """The tag in the file, where an upgrade gave the element another one."""
 
     @property
     def source_tag(self) -> str:
+        """The tag in the file."""
         return self.written or self.tag
 
     def first(self, tag: str) -> Element | None:
+        """Return the first child with a tag; None where there is none."""
         return next((child for child in self.children if child.tag == tag), None)
 
     def walk(self) -> Iterator[Element]:
+        """Yield the element and everything in it, in the order of the file."""
         yield self
         for child in self.children:
             yield from child.walk()
 
     def where(self, attribute: str) -> Location:
-        """The position of an attribute's value, or of the element where it has none."""
+        """Return the position of an attribute's value, or of the element where it has none."""
         return self.attribute_locations.get(attribute, self.location)
 
     def count_attributes(self) -> int:
+        """Count the attributes of the element and everything in it."""
         return sum(len(element.attributes) for element in self.walk())

@@ -1,4 +1,4 @@
-"""Where a cursor stands in texts that are half written; ``|`` marks it."""
+"""``xml_cursor`` and ``yaml_cursor`` on half-written texts; ``|`` marks the cursor."""
 
 from __future__ import annotations
 
@@ -30,6 +30,11 @@ def describe(cursor: Cursor, text: str) -> tuple[CursorKind, str, str, str]:
         ("<a><b></b><c>|", (CursorKind.CHILD, "a/c", "", "")),
         ("<a><b><c>|</b></a>", (CursorKind.CHILD, "a/b/c", "", "")),
         ("<a><b></|", (CursorKind.END, "a/b", "", "")),
+        ("<a><b name= |", (CursorKind.VALUE, "a/b", "name", "")),
+        ("<a><b name=|<c/>", (CursorKind.VALUE, "a/b", "name", "")),
+        ("<a><b name='x|<c d='1'/>", (CursorKind.VALUE, "a/b", "name", "x")),
+        ("<a><b name='x'|", (CursorKind.ATTRIBUTE, "a/b", "", "")),
+        ("<a></b <c |", (CursorKind.ATTRIBUTE, "a/c", "", "")),
         ("<a><!-- <b> | -->", (CursorKind.END, "a", "", "")),
         ("|", (CursorKind.CHILD, "", "", "")),
     ],

@@ -1,4 +1,4 @@
-"""Small edits of files: what changes, and above all what does not."""
+"""``edit``, ``xml_document`` and ``yaml_document``: edits, and the text around them that stays."""
 
 from __future__ import annotations
 
