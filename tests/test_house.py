@@ -19,11 +19,7 @@ STRICT: dict[str, set[str]] = {
     "model": {"diagnostics", "syntax", "plugins"},
 }
 """Room to the part of the foundation that it may import."""
-REPEATED_CLASSES = {
-    "Group", "Kind", "Layout",
-    "Program", "Programs", "Resources", "Scene", "Style",
-    "Texture", "_Reader",
-}  # fmt: skip
+REPEATED_CLASSES = {"Group", "Programs", "Resources", "Scene", "Style"}
 """Class names that are used twice until they are renamed."""
 ARROWS = {
     "diagnostics": set(),
