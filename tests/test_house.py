@@ -58,8 +58,9 @@ ARROWS = {
         "model",
         "reporting",
         "raytrace/programs",
+        "raytrace/selection",
     },
-    "reporting": {"model", "graph", "raytrace/selection"},
+    "reporting": {"model"},
     "accuracy": {
         "run",
         "passes",

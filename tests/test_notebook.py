@@ -34,6 +34,7 @@ def run_cells(path: Any) -> list[Any]:
 def test_the_tutorial_runs(
     monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
+    pytest.importorskip("matplotlib", reason="the extra [plot] is not installed")
     monkeypatch.chdir(ROOT)
     kept = tmp_path_factory.mktemp("references")
     monkeypatch.setattr("nau_py.accuracy.reference.make_cache_folder", lambda name: kept)

@@ -11,7 +11,9 @@ from nau_py.api import load, plan
 from nau_py.graph.picture import draw_svg
 from nau_py.model.linked import Project
 from nau_py.process.files import write_bytes, write_text
-from nau_py.reporting.output import png
+from nau_py.reporting.pass_rows import make_pass_grid
+from nau_py.reporting.pixels import encode_png
+from nau_py.reporting.table import to_markdown
 from nau_py.run.frame import Frame
 from nau_py.run.renderer import Renderer
 
@@ -44,7 +46,7 @@ def build_gallery(root: Path, out: Path) -> Iterator[str]:
         finally:
             renderer.close()
         name = "_".join(file.parent.relative_to(root / "projects").parts)
-        write_bytes(out / f"{name}.png", png(frame.image))
+        write_bytes(out / f"{name}.png", encode_png(frame.image))
         write_text(out / f"{name}.svg", draw_svg(plan(project).graph))
         lines += _entry(root, file, project, frame, name)
         yield f"{name}: {frame.report['frames'][-1]['ms']:.0f} ms"
@@ -66,27 +68,11 @@ def _entry(root: Path, file: Path, project: Project, frame: Frame, name: str) ->
         "",
         f"{about}, [project.xml](../{folder}/project.xml).",
         "",
-        "| pass | class | ms | pixels | rays | est. error |",
-        "|---|---|--:|--:|---|--:|",
-        *(_row(item) for item in report["passes"]),
+        *to_markdown(make_pass_grid(report)),
         "",
         f"![passes and targets of {title}]({name}.svg)",
         "",
     ]
-
-
-def _row(item: dict[str, object]) -> str:
-    if item["status"] != "run":
-        return f"| {item['name']} | {item['class']} | left out: {item['reason']} | | | |"
-    rays = item["rays"]
-    assert isinstance(rays, dict)
-    listed = ", ".join(f"{kind} {count:,}" for kind, count in rays.items())
-    error = item.get("est_error")
-    written = "" if error is None else f"{error:.4f}"
-    return (
-        f"| {item['name']} | {item['class']} | {item['ms']:,.1f} | {item['pixels']:,} | {listed} "
-        f"| {written} |"
-    )
 
 
 def copy_sources(root: Path, out: Path) -> None:

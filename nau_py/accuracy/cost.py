@@ -14,6 +14,7 @@ from nau_py.accuracy.candidate import (
     ladders,
     wishes,
 )
+from nau_py.accuracy.cost_run import CostRun
 from nau_py.accuracy.judge import RANKED, Judge, error_of, root
 from nau_py.accuracy.measure import Bench, Measured, Reference
 from nau_py.accuracy.reference import reference
@@ -21,7 +22,7 @@ from nau_py.accuracy.refine import refine
 from nau_py.accuracy.report import SCHEMA, Answer, CostReport, ReferenceFacts, Verified
 from nau_py.accuracy.statistics import interval
 from nau_py.accuracy.worth import worth
-from nau_py.diagnostics.diagnostic import Diagnostic, Severity, error
+from nau_py.diagnostics.diagnostic import Severity, error
 from nau_py.diagnostics.errors import ProjectError
 from nau_py.model.knob import pick_raytrace_passes
 from nau_py.model.linked import Project
@@ -58,31 +59,6 @@ class Wishes:
     budget_time: float | None = None
     keep: bool = True
     effects: bool = False
-
-
-@dataclass(slots=True)
-class CostRun:
-    """A report, and the pictures behind it."""
-
-    report: CostReport
-    reference: Reference
-    measured: list[Measured]
-    chosen: Candidate | None
-    """The answer to a target error or a time budget."""
-    diagnostics: list[Diagnostic]
-    """What lint says of the project, no error among it."""
-
-    def _repr_png_(self) -> bytes:
-        """The front, for notebooks."""
-        from nau_py.accuracy.page import front_png
-
-        return front_png(self.report)
-
-    def _repr_html_(self) -> str:
-        """The front, the answers and all numbers, for notebooks."""
-        from nau_py.accuracy.page import excerpt
-
-        return excerpt(self.report)
 
 
 class _Meter:

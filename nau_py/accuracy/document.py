@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from nau_py.accuracy.report import CostReport
-from nau_py.accuracy.tables import Grid, comparisons, effects, samples, sentences, settings
+from nau_py.accuracy.tables import comparisons, effects, samples, sentences, settings
+from nau_py.reporting.table import to_markdown
 
 
 def document(report: CostReport) -> str:
@@ -20,13 +21,5 @@ def document(report: CostReport) -> str:
     ]
     for grid in (samples(report), settings(report), comparisons(report), effects(report)):
         if grid is not None:
-            parts.append(_markdown(grid))
+            parts.append("\n".join([f"## {grid.title}", "", *to_markdown(grid)]))
     return "\n\n".join(parts) + "\n"
-
-
-def _markdown(grid: Grid) -> str:
-    lines = [f"## {grid.title}", ""]
-    lines.append("| " + " | ".join(grid.head) + " |")
-    lines.append("|---" + "|--:" * (len(grid.head) - 1) + "|")
-    lines += ["| " + " | ".join(row) + " |" for row in grid.rows]
-    return "\n".join(lines)

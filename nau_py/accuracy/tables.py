@@ -2,19 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from nau_py.accuracy.report import CostReport, Estimate, RegionErrors
-
-
-@dataclass(frozen=True, slots=True)
-class Grid:
-    """A table of texts. ``strong``: the rows that matter most, by index."""
-
-    title: str
-    head: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    strong: frozenset[int] = frozenset()
+from nau_py.reporting.table import Grid
 
 
 def number(value: float | None, digits: int = 3) -> str:

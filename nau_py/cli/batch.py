@@ -22,8 +22,8 @@ def run_batch(
     quiet: bool,
 ) -> int:
     """Exit status: 0 where every project was rendered, 1 otherwise."""
-    from nau_py.grading.grade import grade
-    from nau_py.grading.page import page
+    from nau_py.grading.grade import grade_projects
+    from nau_py.grading.page import write_page
     from nau_py.process.supervised import Limits
 
     if not folder.is_dir():
@@ -35,7 +35,7 @@ def run_batch(
         raise typer.BadParameter(f"'{folder}' holds no project file")
     limits = Limits(seconds, megabytes)
     with progress_bar(quiet) as progress:
-        found = grade(
+        found = grade_projects(
             folder,
             projects,
             limits,
@@ -43,8 +43,8 @@ def run_batch(
             lambda name, done, total: progress("batch", done, total),
             jobs,
         )
-    write_result(report, page(f"Projects of {folder.resolve().name}", found, limits))
+    write_result(report, write_page(f"Projects of {folder.resolve().name}", found, limits))
     for result in found:
         if result.status != "rendered":
-            sys.stderr.write(f"{folder / result.name}: {result.status}: {result.why}\n")
+            sys.stderr.write(f"{folder / result.name}: {result.status}: {result.reason}\n")
     return 0 if all(r.status == "rendered" for r in found) else FAILED

@@ -12,7 +12,7 @@ from nau_py.cli.common import guarded, say, size_of, write_result
 from nau_py.diagnostics.diagnostic import Severity
 
 if TYPE_CHECKING:
-    from nau_py.accuracy.cost import CostRun
+    from nau_py.accuracy.cost_run import CostRun
     from nau_py.model.linked import Project
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)

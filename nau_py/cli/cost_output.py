@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,9 +17,9 @@ from nau_py.diagnostics.location import NOWHERE
 from nau_py.process.files import write_bytes, write_text
 
 if TYPE_CHECKING:
-    from nau_py.accuracy.cost import CostRun
+    from nau_py.accuracy.cost_run import CostRun
     from nau_py.accuracy.report import CostReport
-    from nau_py.accuracy.tables import Grid
+    from nau_py.reporting.table import Grid
 
 
 @contextmanager
@@ -83,17 +84,25 @@ def _table(grid: Grid, title: str) -> Table:
 
 
 def write_all(folder: Path, made: CostRun) -> None:
-    """cost.json, cost.csv, cost.html and cost.png. Raises
-    :class:`~nau_py.OutputError`."""
-    from nau_py.accuracy.page import front_png, page
+    """Write cost.json, cost.csv, cost.html and, with the extra ``plot``, cost.png.
+
+    Raises :class:`~nau_py.OutputError`.
+    """
+    from nau_py.accuracy.front_chart import draw_front
+    from nau_py.accuracy.page import write_page
     from nau_py.accuracy.report import to_csv, to_json
+    from nau_py.reporting.chart import MISSING
 
     try:
         folder.mkdir(parents=True, exist_ok=True)
         write_text(folder / "cost.json", to_json(made.report))
         write_text(folder / "cost.csv", to_csv(made.report))
-        write_text(folder / "cost.html", page(made))
-        write_bytes(folder / "cost.png", front_png(made.report))
+        write_text(folder / "cost.html", write_page(made))
+        front = draw_front(made.report)
+        if front is not None:
+            write_bytes(folder / "cost.png", front)
+        else:
+            sys.stderr.write(f"{MISSING}\n")
     except OSError as problem:
         message = f"output '{folder}' cannot be written: {problem.strerror}"
         raise OutputError(error("E002", NOWHERE, message)) from None

@@ -11,6 +11,7 @@ from nau_py.diagnostics.errors import DeviceError
 from nau_py.version import __version__
 
 EXTRAS = {
+    "plot": ("matplotlib", "matplotlib", "charts of nau-cost"),
     "exr": ("OpenEXR", "openexr", "EXR pictures"),
     "lua": ("lupa", "lupa", "Lua scripts of projects"),
 }

@@ -224,7 +224,7 @@ def _render(
 ) -> list[dict[str, Any]]:
     """Render frames ``first`` to ``last``, or to where the pipelines end; write what is asked."""
     from nau_py.reporting.output import write_image, write_targets
-    from nau_py.reporting.overlay import mask_overlay
+    from nau_py.run.mask_overlay import mask_overlay
 
     reports = []
     for index in range(first, last + 1):

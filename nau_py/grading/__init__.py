@@ -1,1 +1,1 @@
-"""Many projects of other people: each in processes of its own, one page for all."""
+"""Projects of other people: each in processes of its own, one page for all."""

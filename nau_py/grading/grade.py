@@ -1,4 +1,4 @@
-"""Linting and rendering every project of a folder; one that hangs or crashes costs only itself."""
+"""Lint and render the projects of a class, each in child processes of its own."""
 
 from __future__ import annotations
 
@@ -19,18 +19,17 @@ _LINT = "nau_py.cli.lint:main"
 
 @dataclass(slots=True)
 class Result:
-    """What became of one project. ``status``: ``rendered``, ``wrong`` (diagnostics say why) or
-    ``stopped`` (``why`` says it)."""
+    """Result of one project. ``status``: ``rendered``, ``wrong`` (it has errors) or ``stopped``;
+    ``reason``: of the last two, one line; ``messages``: standard error of the run."""
 
     name: str
     status: str
-    why: str = ""
+    reason: str = ""
     seconds: float = 0.0
     diagnostics: list[dict[str, Any]] = field(default_factory=list)
     report: dict[str, Any] | None = None
     picture: bytes | None = None
-    said: str = ""
-    """What the run wrote to stderr."""
+    messages: str = ""
 
     @property
     def errors(self) -> int:
@@ -41,42 +40,47 @@ class Result:
         return sum(1 for d in self.diagnostics if d["severity"] == "warning")
 
 
-def grade(
+def grade_projects(
     folder: Path,
     projects: Sequence[Path],
     limits: Limits,
     more: Sequence[str],
-    told: Callable[[str, int, int], None],
+    report_progress: Callable[[str, int, int], None],
     jobs: int = 1,
 ) -> list[Result]:
-    """Results in the order of ``projects``, which lie below ``folder``. ``more``: further words for
-    nau-run; ``jobs``: projects at a time, which disturb each other's times."""
+    """Lint and render projects; return the results in the order of ``projects``, below ``folder``.
+
+    ``more``: further arguments of nau-run; ``jobs``: projects at a time, which disturb each
+    other's times.
+    """
     found = []
-    ended = Event()
+    interrupted = Event()
     names = [str(path.relative_to(folder)) for path in projects]
     with ThreadPoolExecutor(max_workers=jobs) as pool:
         waiting = pool.map(
-            lambda path, name: grade_one(path, name, limits, more, ended.is_set), projects, names
+            lambda path, name: grade_project(path, name, limits, more, interrupted.is_set),
+            projects,
+            names,
         )
         try:
             for name, result in zip(names, waiting):
                 found.append(result)
-                told(name, len(found), len(projects))
-        except BaseException:  # Ctrl-C: what runs is stopped, what waits never begins
-            ended.set()
+                report_progress(name, len(found), len(projects))
+        except BaseException:  # Ctrl-C: stop running projects, start no others
+            interrupted.set()
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     return found
 
 
-def grade_one(
+def grade_project(
     path: Path,
     name: str,
     limits: Limits,
     more: Sequence[str],
     cancelled: Callable[[], bool] = lambda: False,
 ) -> Result:
-    """Lint, then render, one project."""
+    """Lint one project, then render it."""
 
     def run(entry: str, *arguments: str) -> Outcome:
         return run_limited(entry, arguments, limits, cancelled)
@@ -84,17 +88,17 @@ def grade_one(
     linted = run(_LINT, "--format", "json", str(path))
     if linted.stopped:
         return Result(name, "stopped", f"linting: {linted.stopped}", linted.seconds)
-    diagnostics = _findings(linted)
+    diagnostics = _parse_diagnostics(linted)
     with tempfile.TemporaryDirectory() as folder:
         picture, report = Path(folder, "picture.png"), Path(folder, "report.json")
         outcome = run(
             _RUN, str(path), "-o", str(picture), "--report", str(report), "--quiet", *more
         )
-        found = Result(name, "rendered", "", outcome.seconds, diagnostics, said=outcome.err)
+        found = Result(name, "rendered", "", outcome.seconds, diagnostics, messages=outcome.err)
         if outcome.stopped:
-            found.status, found.why = "stopped", outcome.stopped
+            found.status, found.reason = "stopped", outcome.stopped
         elif outcome.code != 0:
-            found.status, found.why = "wrong", _first_error(outcome)
+            found.status, found.reason = "wrong", _find_first_error(outcome)
         if picture.is_file():
             found.picture = picture.read_bytes()
         if report.is_file():
@@ -102,7 +106,7 @@ def grade_one(
     return found
 
 
-def _findings(outcome: Outcome) -> list[dict[str, Any]]:
+def _parse_diagnostics(outcome: Outcome) -> list[dict[str, Any]]:
     try:
         found = json.loads(outcome.out)
     except ValueError:
@@ -110,7 +114,7 @@ def _findings(outcome: Outcome) -> list[dict[str, Any]]:
     return list(found)
 
 
-def _first_error(outcome: Outcome) -> str:
+def _find_first_error(outcome: Outcome) -> str:
     lines = [line for line in outcome.err.splitlines() if "error[" in line]
     if lines:
         return lines[0].partition("error[")[2].partition("]: ")[2]

@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-import nau_py.reporting.html as html
 from nau_py.model.linked import Project
-from nau_py.reporting.output import png
+from nau_py.reporting.page import render_template
+from nau_py.reporting.pass_rows import make_pass_grid
+from nau_py.reporting.table import Grid
 
 
 def project_html(project: Project) -> str:
@@ -23,27 +24,16 @@ def project_html(project: Project) -> str:
             target = f"{owner[0]}::{owner[1].name}" if owner else "window"
             rows.append((first, pass_.name or "", pass_.pass_class, target))
     width, height = project.size
-    about = html.tag("p", f"{project.name}: {width} x {height} pixels, {project.path}")
-    return f"<div>{about}{html.table(('pipeline', 'pass', 'class', 'draws into'), rows)}</div>"
+    label = f"{project.name}: {width} x {height} pixels, {project.path}"
+    head = ("pipeline", "pass", "class", "draws into")
+    pipelines = Grid("Pipelines", head, tuple(rows), left=len(head))
+    return render_template("project.html", label=label, pipelines=pipelines)
 
 
 def frame_html(image: NDArray[np.generic], report: dict[str, Any]) -> str:
-    """The picture, and what each pass cost."""
+    """Write the picture of a frame, and the cost of each pass."""
     frame = report["frames"][-1]
-    words = f"{report['project']}: {frame['pipeline']}, frame {frame['index']}"
-    rows = []
-    for item in frame["passes"]:
-        ran, error = item["status"] == "run", item.get("est_error")
-        rows.append(
-            (
-                item["name"],
-                item["class"],
-                f"{item['ms']:,.1f}" if ran else f"left out: {item['reason']}",
-                f"{item['pixels']:,}" if item["pixels"] else "",
-                ", ".join(f"{kind} {count:,}" for kind, count in item["rays"].items()),
-                "" if error is None else f"{error:.4f}",
-            )
-        )
-    head = ("pass", "class", "ms", "pixels", "rays", "est. error")
-    about = html.tag("p", f"{words}, {frame['ms']:,.0f} ms")
-    return f"<div>{about}{html.picture(png(image), words)}{html.table(head, rows)}</div>"
+    label = f"{report['project']}: {frame['pipeline']}, frame {frame['index']}"
+    passes = make_pass_grid(frame)
+    ms = f"{frame['ms']:,.0f}"
+    return render_template("frame.html", label=label, ms=ms, image=image, passes=passes)

@@ -8,40 +8,18 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from nau_py.diagnostics.diagnostic import error
 from nau_py.diagnostics.errors import OutputError
 from nau_py.diagnostics.location import NOWHERE
 from nau_py.process.files import write_bytes
+from nau_py.reporting.pixels import encode_png
 
 ENDINGS = (".png", ".exr", ".npy")
 
 
 def _failed(path: Path, why: str) -> OutputError:
     return OutputError(error("E002", NOWHERE, f"output '{path}' cannot be written: {why}"))
-
-
-def to_bytes8(image: NDArray[Any]) -> NDArray[np.uint8]:
-    """8-bit values of an image: 8-bit ones as they are, floats clamped to 0..1."""
-    if image.dtype == np.uint8:
-        return image
-    values = np.nan_to_num(image.astype(np.float64), nan=0.0, posinf=1.0, neginf=0.0)
-    if image.dtype.kind in "iu":
-        values /= float(np.iinfo(image.dtype).max)
-    return np.asarray(np.rint(np.clip(values, 0, 1) * 255), np.uint8)
-
-
-def png(image: NDArray[Any]) -> bytes:
-    """A PNG of a picture, rows from the top."""
-    pixels = to_bytes8(image)
-    channels = pixels.shape[2] if pixels.ndim == 3 else 1
-    if channels == 2:
-        pixels = np.concatenate([pixels, np.zeros_like(pixels[:, :, :1])], axis=2)
-    pixels = pixels[:, :, 0] if channels == 1 and pixels.ndim == 3 else pixels[..., :3]
-    stream = io.BytesIO()
-    Image.fromarray(np.ascontiguousarray(pixels)).save(stream, "PNG")
-    return stream.getvalue()
 
 
 def _npy(image: NDArray[Any]) -> bytes:
@@ -91,7 +69,7 @@ def write_image(path: Path, image: NDArray[Any]) -> None:
     if ending == ".exr":
         data = exr(path, image)
     else:
-        data = png(image) if ending == ".png" else _npy(image)
+        data = encode_png(image) if ending == ".png" else _npy(image)
     try:
         write_bytes(path, data)
     except OSError as problem:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.reporting.notebook import frame_html
-from nau_py.reporting.output import png
+from nau_py.reporting.pixels import encode_png
 
 
 @dataclass(slots=True)
@@ -34,7 +34,7 @@ class Frame:
 
     def _repr_png_(self) -> bytes:
         """Return the picture, for notebooks."""
-        return png(self.image)
+        return encode_png(self.image)
 
     def _repr_html_(self) -> str:
         """Return the picture and the cost of each pass, for notebooks."""

@@ -26,8 +26,14 @@ from nau_py.passes.compute import ComputePass
 from nau_py.passes.frame import Progress, RunOptions
 from nau_py.passes.ray_query import RayQueryPass
 from nau_py.process.worker import serve
-from nau_py.reporting.output import exr, png
-from nau_py.reporting.target_picture import difference, encoded, shown, thumbnail, tinted
+from nau_py.reporting.output import exr
+from nau_py.reporting.pixels import encode_png, tint
+from nau_py.reporting.target_picture import (
+    FAST,
+    display_difference,
+    display_target,
+    encode_thumbnail,
+)
 from nau_py.run.frame import Frame
 from nau_py.run.renderer import Renderer
 from nau_py.run.used_files import PROGRAM, SHADER
@@ -113,7 +119,7 @@ class RenderWorker:
         named = self._named(frame)
         targets = [(n, tuple(v.shape), str(v.dtype)) for n, v in named.items()]
         return PictureStep(
-            png(image),
+            encode_png(image),
             width,
             height,
             coarse,
@@ -169,7 +175,7 @@ class RenderWorker:
     def thumbnails(self) -> list[tuple[str, bytes]]:
         """Return the name and a small PNG of every target of the last full frame."""
         return [
-            (name, thumbnail(shown(values, depth=_is_depth(name, values))))
+            (name, encode_thumbnail(display_target(values, depth=_is_depth(name, values))))
             for name, values in self._named(self._frame).items()
         ]
 
@@ -188,9 +194,11 @@ class RenderWorker:
     def target(self, name: str, channel: str, exposure: float, mask: bool) -> bytes:
         """Return a target as a PNG of its full size. Raises :class:`KeyError`."""
         values = self._target(name)
-        pixels = shown(values, channel, exposure, _is_depth(name, values))
+        pixels = display_target(values, channel, exposure, _is_depth(name, values))
         chosen = self._mask() if mask else None
-        return encoded(pixels if chosen is None else tinted(pixels, chosen))
+        if chosen is not None and chosen.shape == pixels.shape[:2]:
+            pixels = tint(pixels, chosen.astype(np.float64))
+        return encode_png(pixels, FAST)
 
     def _mask(self) -> NDArray[np.bool_] | None:
         for steered in self._renderers.values():
@@ -211,7 +219,7 @@ class RenderWorker:
     def keep(self, label: str) -> bytes:
         """Keep the present picture, to compare later ones with it. Raises :class:`ValueError`."""
         self._other = self._picture(), label
-        return png(self._other[0])
+        return encode_png(self._other[0])
 
     def render_other(self, request: PictureRequest, steps: int, label: str) -> bytes:
         """Render another picture to compare with, the mean of ``steps`` ones; return its PNG."""
@@ -225,7 +233,7 @@ class RenderWorker:
                 total = values if total is None else total + values
             assert total is not None
             self._other = total / max(steps, 1), label
-            return png(self._other[0])
+            return encode_png(self._other[0])
         finally:
             renderer.close()
 
@@ -246,7 +254,7 @@ class RenderWorker:
             "FLIP": found.flip,
             "greatest": float(np.nanmax(np.abs(mine - other))),
         }
-        return encoded(difference(mine, other)), {
+        return encode_png(display_difference(mine, other), FAST), {
             k: v if v is not None and isfinite(v) else None for k, v in figures.items()
         }
 
@@ -273,7 +281,7 @@ class RenderWorker:
                     frame = steered.render(
                         replace(request, frame=index), self.options.seed, self._report
                     )
-                    archive.writestr(f"frame.{index:04d}.png", png(frame.image))
+                    archive.writestr(f"frame.{index:04d}.png", encode_png(frame.image))
         finally:
             renderer.close()
         return stream.getvalue()

@@ -19,7 +19,8 @@ from nau_py.accuracy.apply import apply
 from nau_py.accuracy.candidate import base, candidates, ladders, prepare
 from nau_py.accuracy.cost import CostRun, Wishes, cost
 from nau_py.accuracy.document import document
-from nau_py.accuracy.page import front_png, page, worst
+from nau_py.accuracy.front_chart import draw_front
+from nau_py.accuracy.page import find_worst_square, write_page
 from nau_py.accuracy.report import SettingCost, schema, to_csv, to_json
 from nau_py.accuracy.statistics import spread
 from nau_py.run.pipeline_choice import choose_pipeline
@@ -99,8 +100,9 @@ def test_more_samples_less_error(folder: Folder) -> None:
     assert {"gl_renderer", "processor", "numpy", "embreex", "nau_py"} <= set(found.report.machine)
 
 
-def test_the_files(folder: Folder) -> None:
+def test_the_files(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     """JSON by the published schema, CSV with a row a setting, a page without network, a PNG."""
+    pytest.importorskip("matplotlib", reason="the extra [plot] is not installed")
     found = run(penumbra(folder), knobs={"spp": "1, 4"}, reference=64, effects=True)
     text = to_json(found.report)
     published = json.loads((ROOT / "docs" / "cost-1.schema.json").read_text())
@@ -109,12 +111,22 @@ def test_the_files(folder: Folder) -> None:
     rows = list(csv.DictReader(io.StringIO(to_csv(found.report))))
     assert [r["spp"] for r in rows] == ["4", "1"]
     assert float(rows[1]["picture_rmse"]) > float(rows[0]["picture_rmse"])
-    html = page(found)
+    html = write_page(found)
     assert re.findall(r"(?:src|href)=\"(?!data:)[^\"]*\"|https?://", html) == []
     for s in found.report.settings:
         assert s.label in html
     assert "What each effect is worth" in html
-    drawn = np.asarray(Image.open(io.BytesIO(front_png(found.report))))
+    assert "data:image/svg+xml" in html
+    with monkeypatch.context() as without:
+        without.setattr("nau_py.accuracy.front_chart.can_draw", lambda: False)
+        assert draw_front(found.report) is None
+        plain = write_page(found)
+        assert "pip install &#39;nau_py[plot]&#39;" in plain
+        assert "data:image/svg+xml" not in plain
+        assert "All numbers" in plain
+    front = draw_front(found.report)
+    assert front is not None
+    drawn = np.asarray(Image.open(io.BytesIO(front)))
     assert drawn.std() > 5
     told = document(found.report)
     assert "## What 4 samples buy over 1" in told
@@ -429,7 +441,7 @@ def test_the_project_says_what_to_measure(folder: Folder) -> None:
 def test_the_worst_place() -> None:
     difference = np.zeros((40, 60))
     difference[25:30, 33:41] = 1.0
-    row, column = worst(difference, 8)
+    row, column = find_worst_square(difference, 8)
     assert row <= 25 <= 30 <= row + 8
     assert column == 33
 

@@ -185,7 +185,7 @@ def test_weights_as_samples(masked: Folder) -> None:
 
 
 def test_the_overlay_tints_what_is_traced(masked: Folder, tmp_path: object) -> None:
-    from nau_py.reporting.overlay import mask_overlay
+    from nau_py.run.mask_overlay import mask_overlay
 
     masked.write("project.xml", MASKED.format(select='<region width="0.5" />', how=""))
     renderer = nau_py.Renderer(masked.load())

@@ -1,0 +1,1 @@
+"""Tests of nau_py.reporting."""
