@@ -1,5 +1,6 @@
 // Two pictures behind a slider, with their difference and its figures.
-import { $, choose, fetched, hexImage, state, tag } from "./app.js";
+import { fetchOrNote, state } from "./connection.js";
+import { $, fillSelect, imageOfHex, tag } from "./dom.js";
 
 let part = 0.5, label = "", timer = null;
 
@@ -10,7 +11,7 @@ function place() {
 
 async function take(query, text) {
   const params = new URLSearchParams({ ...query, label: text });
-  const answer = await fetched(`keep?${params}`, { method: "POST" });
+  const answer = await fetchOrNote(`keep?${params}`, { method: "POST" });
   $("other").src = URL.createObjectURL(await answer.blob());
   label = text;
   $("other").hidden = $("bar").hidden = false;
@@ -21,11 +22,11 @@ async function take(query, text) {
 
 async function figures() {
   if ($("other").hidden) return;
-  const found = await (await fetched("compare")).json();
+  const found = await (await fetchOrNote("compare")).json();
   const rows = Object.entries(found.figures).map(([name, value]) => tag("tr", {}, tag("th", {}, name),
     tag("td", { "data-figure": name }, value == null ? "–" : Number(value.toPrecision(4)).toString())));
   $("figures").replaceChildren(...rows);
-  $("difference").src = hexImage(found.difference);
+  $("difference").src = imageOfHex(found.difference);
 }
 
 export const compare = {
@@ -59,7 +60,7 @@ export const compare = {
     });
   },
   refresh(content) {
-    choose($("other-pipeline"), content.pipelines, content.pipeline);
+    fillSelect($("other-pipeline"), content.pipelines, content.pipeline);
     clearTimeout(timer); // the figures follow when the picture has settled a little
     if (!$("other").hidden && !state.glance.coarse) timer = setTimeout(() => figures().catch(() => {}), 700);
   },

@@ -1,5 +1,6 @@
 // The parameters: a group a camera, light, material and pass; a change is sent as it is made.
-import { $, send, tag } from "./app.js";
+import { send } from "./connection.js";
+import { $, tag } from "./dom.js";
 
 const open = new Set();
 let built = "";

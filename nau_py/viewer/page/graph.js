@@ -1,6 +1,7 @@
 // The pipeline: passes, targets with thumbnails, and arrows from writers to readers. Python
 // computes the positions (nau_py/viewer/graph.py); this file draws them.
-import { $, fetched, hexImage, state } from "./app.js";
+import { fetchOrNote, state } from "./connection.js";
+import { $, imageOfHex } from "./dom.js";
 import { inspect } from "./inspect.js";
 
 const NS = "http://www.w3.org/2000/svg";
@@ -80,9 +81,9 @@ async function thumbnails() {
   if (!version || asked === version) return;
   asked = version;
   try {
-    const found = await (await fetched("thumbnails")).json();
+    const found = await (await fetchOrNote("thumbnails")).json();
     Object.values(pictures).forEach((url) => url.startsWith("blob:") && URL.revokeObjectURL(url));
-    pictures = Object.fromEntries(Object.entries(found).map(([name, hex]) => [name, hexImage(hex)]));
+    pictures = Object.fromEntries(Object.entries(found).map(([name, hex]) => [name, imageOfHex(hex)]));
     draw(state.content);
-  } catch { /* fetched() has reported the error */ }
+  } catch { /* fetchOrNote() has reported the error */ }
 }

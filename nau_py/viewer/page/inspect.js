@@ -1,5 +1,6 @@
 // A target at full size: channels, exposure, the mask, and the numbers under the cursor.
-import { $, choose, fetched, show, state, tag } from "./app.js";
+import { fetchOrNote, state } from "./connection.js";
+import { $, fillSelect, showTab, tag } from "./dom.js";
 
 const CHANNELS = ["rgb", "r", "g", "b", "a"];
 let name = "", channel = "rgb", exposure = 0, mask = false, full = false;
@@ -20,7 +21,7 @@ async function read(event) {
 }
 
 async function said([x, y]) {
-  const answer = await fetched(`pixel?${new URLSearchParams({ name, x, y })}`);
+  const answer = await fetchOrNote(`pixel?${new URLSearchParams({ name, x, y })}`);
   const { values } = await answer.json();
   const labels = "rgba";
   const lines = values.map((v, i) => `${labels[i]} = ${typeof v === "number" ? Number(v.toPrecision(7)) : v}`);
@@ -31,7 +32,7 @@ async function load() {
   const image = $("target");
   if (!image || !name) return;
   const query = new URLSearchParams({ name, channel, exposure, mask: mask ? 1 : 0, n: state.glance.pictures });
-  const answer = await fetched(`target.png?${query}`);
+  const answer = await fetchOrNote(`target.png?${query}`);
   const before = image.src;
   image.src = URL.createObjectURL(await answer.blob());
   image.dataset.name = name;
@@ -68,14 +69,14 @@ let version = -1;
 export const inspect = {
   open(target) {
     name = target;
-    show("inspect");
+    showTab("inspect");
     this.refresh(state.content, true);
   },
   refresh(content, force = false) {
     const names = content.targets.map(([target]) => target);
     if (!$("targets")) build();
     if (!names.includes(name)) name = names[0] || "";
-    choose($("targets"), names, name);
+    fillSelect($("targets"), names, name);
     if (!$("inspect").hidden && (force || version !== content.version) && name) {
       version = content.version;
       load().catch(() => {});

@@ -1,5 +1,6 @@
 // Findings, measurements, and what can be taken away.
-import { $, fetched, send, tag } from "./app.js";
+import { fetchOrNote, send } from "./connection.js";
+import { $, tag } from "./dom.js";
 
 export function diagnostics(content) {
   const listed = content.diagnostics.map((d) => tag("div", { class: "finding", "data-rule": d.rule },
@@ -18,7 +19,7 @@ export function cost() {
   const frame = tag("iframe", { title: "accuracy against time", hidden: true });
   const button = tag("button", { id: "measure" }, "Measure");
   const look = async () => {
-    const now = await (await fetched("cost")).json();
+    const now = await (await fetchOrNote("cost")).json();
     said.textContent = now.said.join("\n");
     said.hidden = now.state === "done" || !now.said.length;
     button.disabled = now.state === "running";
@@ -29,7 +30,7 @@ export function cost() {
     }
   };
   button.onclick = async () => {
-    await fetched("cost", { method: "POST" });
+    await fetchOrNote("cost", { method: "POST" });
     await look();
   };
   $("cost").append(tag("p", { class: "soft" },
@@ -45,7 +46,7 @@ export function exports_(content) {
     const link = (name) => tag("a", { href: `export/${name}`, download: name }, name);
     const zip = tag("button", { id: "frames", onclick: async () => {
       const query = new URLSearchParams({ first: first.value, last: last.value });
-      const answer = await fetched(`export/frames.zip?${query}`).catch(() => null);
+      const answer = await fetchOrNote(`export/frames.zip?${query}`).catch(() => null);
       if (!answer) return;
       tag("a", { href: URL.createObjectURL(await answer.blob()), download: "frames.zip" }).click();
     } }, "frames.zip");

@@ -1,5 +1,6 @@
 // Mouse, wheel and keys over the picture move the camera.
-import { $, send } from "./app.js";
+import { send } from "./connection.js";
+import { $ } from "./dom.js";
 
 const TURN = 0.008; // radians a pixel
 const STEP = 0.01; // parts of the scene's diagonal a key press
