@@ -6,7 +6,7 @@ import json
 import sys
 from pathlib import Path
 
-from nau_py.accuracy.report import schema
+from nau_py.accuracy.report import make_schema
 from nau_py.diagnostics.catalogue import RULES
 from nau_py.model.accuracy import KNOBS
 from nau_py.model.attribute import Attribute
@@ -184,7 +184,7 @@ def main() -> None:
     folder = Path(sys.argv[1])
     write_text(folder / "rules.md", rules_page())
     write_text(folder / "reference.md", reference_page())
-    write_text(folder / "cost-1.schema.json", json.dumps(schema(), indent=2) + "\n")
+    write_text(folder / "cost-1.schema.json", json.dumps(make_schema(), indent=2) + "\n")
 
 
 if __name__ == "__main__":

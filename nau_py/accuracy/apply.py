@@ -1,4 +1,4 @@
-"""Writing a setting back into a project file: only the values that it must, the rest as it was."""
+"""Write a setting into a project file; only the changed values are edited."""
 
 from __future__ import annotations
 
@@ -16,8 +16,10 @@ from nau_py.syntax.document import Document, Edit
 from nau_py.syntax.edit import read_document
 
 
-def apply(project: Project, pipeline: Pipeline, setting: Candidate, own: Candidate) -> list[str]:
-    """Write what differs from ``own`` into the project file; returns what was written, in words.
+def apply_setting(
+    project: Project, pipeline: Pipeline, setting: Candidate, own: Candidate
+) -> list[str]:
+    """Write the values that differ from ``own`` into the project file; return the changes as text.
 
     Raises :class:`~nau_py.ProjectError` for a knob that no project file can hold (mask,
     scale, filter, format); the file is then as it was.
@@ -26,7 +28,7 @@ def apply(project: Project, pipeline: Pipeline, setting: Candidate, own: Candida
     path = Path(where.file)
     document = read_document(path)
     edits: list[Edit] = []
-    said: list[str] = []
+    changes: list[str] = []
     for name, value in setting.values:
         if value == own[name] or value == AS_IT_IS:
             continue
@@ -36,14 +38,14 @@ def apply(project: Project, pipeline: Pipeline, setting: Candidate, own: Candida
             raise ProjectError(error("E002", where, message))
         for node in found.nodes:
             edits += _edits(document, node, found.attribute, value)
-        said.append(f"{name} {own[name]} -> {value}")
+        changes.append(f"{name} {own[name]} -> {value}")
     if edits:
         document.write(path, edits)
-    return said
+    return changes
 
 
 def _edits(document: Document, node: Node, attribute: str, value: Value) -> list[Edit]:
-    """Give ``attribute`` of ``node`` the value."""
+    """Make the edits that set ``attribute`` of ``node``."""
     if not isinstance(node, Pass):
         return document.set_value(document.offset(node.where(attribute)), str(value))
     written = node.settings.get(attribute)

@@ -1,4 +1,4 @@
-"""Candidates: a project with its knobs set, what it is called, and how it runs."""
+"""Candidates: values of the knobs of a project, and the project with these values."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from nau_py.passes.frame import RunOptions
 from nau_py.run.pipeline_choice import choose_pipeline
 
 AS_IT_IS = "project"
-"""The value of a knob that stays as the project has it."""
+"""Value of a knob that keeps the project's own value."""
 DEFAULT_SPP = "1, 4, 16, 64"
 DEFAULT_DEPTH = "1, 2, 3, 4"
 _SUFFIXES = {"8-bit": "", "half": "16F", "float": "32F"}
@@ -29,15 +29,15 @@ Ladders = dict[str, tuple[Value, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """The values of the knobs that a sweep turns, by name, in the order of the ladders."""
+    """Values of the knobs of a sweep by name, in the order of the ladders."""
 
     values: tuple[tuple[str, Value], ...]
 
     def __getitem__(self, knob: str) -> Value | None:
         return dict(self.values).get(knob)
 
-    def but(self, knob: str, value: Value) -> Candidate:
-        """The same with another value of one knob."""
+    def with_value(self, knob: str, value: Value) -> Candidate:
+        """Return the same candidate with another value of one knob."""
         return Candidate(tuple((dict(self.values) | {knob: value}).items()))
 
     @property
@@ -49,8 +49,8 @@ def _text(value: Value) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def ladders(project: Project, pipeline: Pipeline, given: Mapping[str, str]) -> Ladders:
-    """The values to try: those ``given`` (knob to text), else the project's, else the default:
+def read_ladders(project: Project, pipeline: Pipeline, given: Mapping[str, str]) -> Ladders:
+    """Read the values to try: those ``given`` (knob to text), else the project's, else the default:
     samples 1, 4, 16, 64, depth 1 to 4, and the mask against tracing every pixel.
 
     Raises :class:`~nau_py.ProjectError` for knobs that do not exist or wrong values.
@@ -80,8 +80,8 @@ def ladders(project: Project, pipeline: Pipeline, given: Mapping[str, str]) -> L
     return found
 
 
-def base(project: Project, pipeline: Pipeline, turned: Ladders) -> Candidate:
-    """The project as it is, in terms of the knobs that are turned."""
+def make_base(project: Project, pipeline: Pipeline, turned: Ladders) -> Candidate:
+    """Make the candidate of the unchanged project."""
     values: list[tuple[str, Value]] = []
     for name in turned:
         own = find_knob_target(project, pipeline.passes, name).get(project)
@@ -89,18 +89,22 @@ def base(project: Project, pipeline: Pipeline, turned: Ladders) -> Candidate:
     return Candidate(tuple(values))
 
 
-def candidates(start: Candidate, turned: Ladders, combine: bool) -> list[Candidate]:
-    """``start``, and every value of each knob with the others as in it, or every combination."""
+def make_candidates(start: Candidate, turned: Ladders, combine: bool) -> list[Candidate]:
+    """Make ``start``, and ``start`` with each value of each knob; or all combinations."""
     if combine:
         found = [Candidate(tuple(zip(turned, values))) for values in product(*turned.values())]
     else:
-        found = [start.but(name, value) for name, values in turned.items() for value in values]
+        found = [
+            start.with_value(name, value) for name, values in turned.items() for value in values
+        ]
     return list(dict.fromkeys([start, *found]))
 
 
-def best(project: Project, pipeline: Pipeline, start: Candidate, turned: Ladders) -> Candidate:
-    """The most accurate value of each knob but spp: what the reference is rendered with. A
-    pipeline with a mask is traced everywhere."""
+def choose_best(
+    project: Project, pipeline: Pipeline, start: Candidate, turned: Ladders
+) -> Candidate:
+    """Choose the most accurate value of each knob but spp, for the reference. A pipeline with a
+    mask is traced everywhere."""
     wanted = dict(start.values)
     if "depth" in turned:
         wanted["depth"] = max([wanted["depth"], *turned["depth"]], key=float)
@@ -114,14 +118,14 @@ def best(project: Project, pipeline: Pipeline, start: Candidate, turned: Ladders
 
 @dataclass(frozen=True, slots=True)
 class Prepared:
-    """A candidate that can run: its own copy of the project, options and window."""
+    """A candidate that can be rendered: its own copy of the project, options and window size."""
 
     project: Project
     options: RunOptions
     size: tuple[int, int]
 
 
-def prepare(
+def prepare_candidate(
     project: Project,
     pipeline: Pipeline,
     candidate: Candidate,
@@ -166,6 +170,6 @@ def _set_format(project: Project, passes: list[Pass], suffix: str) -> None:
         color.internalFormat = name if name in COLOR_FORMATS else f"RGBA{suffix}"
 
 
-def wishes(project: Project) -> Accuracy:
-    """What the project says about its measuring."""
+def read_cost_settings(project: Project) -> Accuracy:
+    """Return the element of the project with the settings of its cost run."""
     return project.file.accuracy or Accuracy()

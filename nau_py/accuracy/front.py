@@ -1,6 +1,6 @@
-"""Which settings are worth their time: Pareto front, knee, equal-time and equal-error answers.
+"""Pareto front of time and error, its knee, and the best points at equal time and equal error.
 
-A point is (time, error), both to be small.
+A point is (time, error); smaller is better in both.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from math import log
 Point = tuple[float, float]
 
 
-def front(points: Sequence[Point]) -> list[int]:
-    """Indices of the points that no other one beats in both, by growing time (Pareto)."""
+def find_front(points: Sequence[Point]) -> list[int]:
+    """Return the indices of the points that no other one beats in both, by growing time."""
     order = sorted(range(len(points)), key=lambda i: points[i])
     found: list[int] = []
     least = float("inf")
@@ -23,9 +23,12 @@ def front(points: Sequence[Point]) -> list[int]:
     return found
 
 
-def knee(points: Sequence[Point]) -> int | None:
-    """Index into ``points``, a front by growing time: the point farthest below the line between
-    the ends, both axes logarithmic (Satopää et al. 2011); None below three points."""
+def find_knee(points: Sequence[Point]) -> int | None:
+    """Return the index of the knee of ``points``, a front by growing time; None below three points.
+
+    The knee is farthest below the line between the ends, both axes logarithmic (Satopää et al.
+    2011).
+    """
     usable = [i for i, (t, e) in enumerate(points) if t > 0 and e > 0]
     if len(usable) < 3:
         return None
@@ -43,13 +46,13 @@ def knee(points: Sequence[Point]) -> int | None:
     return best if below(best) > 0 else None
 
 
-def at_time(points: Sequence[Point], time: float) -> int | None:
-    """The most accurate point that takes at most ``time``."""
+def find_most_accurate(points: Sequence[Point], time: float) -> int | None:
+    """Return the index of the most accurate point that takes at most ``time``."""
     fitting = [i for i, (t, _) in enumerate(points) if t <= time]
     return min(fitting, key=lambda i: (points[i][1], points[i][0]), default=None)
 
 
-def at_error(points: Sequence[Point], error: float) -> int | None:
-    """The cheapest point whose error is at most ``error``."""
+def find_fastest(points: Sequence[Point], error: float) -> int | None:
+    """Return the index of the fastest point whose error is at most ``error``."""
     fitting = [i for i, (_, e) in enumerate(points) if e <= error]
     return min(fitting, key=lambda i: points[i], default=None)

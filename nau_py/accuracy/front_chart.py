@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from nau_py.accuracy.report import CostReport, SettingCost
-from nau_py.accuracy.tables import sentences, settings
+from nau_py.accuracy.tables import make_setting_grid, write_sentences
 from nau_py.reporting.chart import MISSING, Chart, ChartPoint, can_draw, draw_png, draw_svg
 from nau_py.reporting.page import render_template, to_data_uri
 
@@ -56,6 +56,6 @@ def write_excerpt(report: CostReport) -> str:
         "cost_excerpt.html",
         charts=draw_charts(report, [report.region]),
         missing=MISSING,
-        sentences=sentences(report),
-        settings=settings(report),
+        sentences=write_sentences(report),
+        settings=make_setting_grid(report),
     )

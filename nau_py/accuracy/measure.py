@@ -1,4 +1,4 @@
-"""Rendering a candidate several times: pictures, errors, times, rays."""
+"""Measurement of a candidate by several renders: pictures, errors, times, rays."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.accuracy.candidate import Candidate, Prepared, prepare
-from nau_py.accuracy.metrics import F64, Errors, Mask, measure
-from nau_py.accuracy.picture import enlarged, mask_of, picture
-from nau_py.accuracy.statistics import Moments, bias_and_variance
+from nau_py.accuracy.candidate import Candidate, Prepared, prepare_candidate
+from nau_py.accuracy.metrics import F64, Errors, Mask, measure_errors
+from nau_py.accuracy.picture import enlarge, find_traced_pixels, to_picture
+from nau_py.accuracy.statistics import Moments, split_error
 from nau_py.graph.resource import WINDOW
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
@@ -21,9 +21,9 @@ from nau_py.run.frame import Frame
 from nau_py.run.renderer import Renderer
 
 STAGES = ("raster", "trace", "shade", "build", "read_back", "other")
-"""Stages of a frame; ``set_up`` comes once, before the first."""
-Told = Callable[[float], None]
-"""Called with the part of the present frame that is done, 0 to 1."""
+"""Stages of a frame. ``set_up`` happens once, before the first frame."""
+ReportPart = Callable[[float], None]
+"""Callback for the part of the present frame that is done, 0 to 1."""
 
 
 @dataclass(slots=True)
@@ -44,16 +44,16 @@ class Reference:
 
     @property
     def regions(self) -> tuple[str, ...]:
-        """The regions that errors are measured over."""
+        """Names of the regions that errors are measured over."""
         return ("picture", "mask") if self.mask is not None else ("picture",)
 
     def region(self, name: str) -> Mask:
-        """The pixels of ``picture`` or ``mask``."""
+        """Return the pixels of the region ``picture`` or ``mask``, bool (h, w)."""
         whole = np.ones(self.shape, bool)
         return self.mask if name == "mask" and self.mask is not None else whole
 
     def own_mse(self, name: str) -> float:
-        """Estimated mean squared error of the reference itself in a region."""
+        """Estimate the mean squared error of the reference itself in a region."""
         values = self.variance[self.region(name)]
         values = values[np.isfinite(values)]
         return float(values.mean()) if len(values) else float("nan")
@@ -61,7 +61,7 @@ class Reference:
 
 @dataclass(slots=True)
 class Measured:
-    """What several runs of a candidate gave. Times in milliseconds, a list entry a run."""
+    """Results of several runs of a candidate. Times in milliseconds, lists have an entry a run."""
 
     candidate: Candidate
     ms: list[float] = field(default_factory=list)
@@ -83,8 +83,8 @@ class Measured:
     machine: dict[str, Any] = field(default_factory=dict)
 
 
-def stage_times(report: dict[str, Any], capture_ms: float) -> dict[str, float]:
-    """The stages of a frame's report: passes that do not trace count as raster."""
+def sum_stages(report: dict[str, Any], capture_ms: float) -> dict[str, float]:
+    """Sum the times of a frame by stage; passes that do not trace count as raster."""
     found = dict.fromkeys(STAGES, 0.0)
     frame = report["frames"][0]
     for item in frame["passes"]:
@@ -113,13 +113,13 @@ class Bench:
         self.project, self.pipeline = project, pipeline
         self.options, self.size, self.frame = options, size, frame
 
-    def renderer(self, candidate: Candidate) -> Renderer:
-        """A renderer of a candidate."""
-        return self._renderer(self.prepared(candidate), lambda part: None)
+    def make_renderer(self, candidate: Candidate) -> Renderer:
+        """Make a renderer of a candidate."""
+        return self._make_renderer(self.prepare(candidate), lambda part: None)
 
-    def _renderer(self, prepared: Prepared, told: Told) -> Renderer:
+    def _make_renderer(self, prepared: Prepared, report_part: ReportPart) -> Renderer:
         def progress(name: str, done: int, total: int) -> None:
-            told(done / max(total, 1))
+            report_part(done / max(total, 1))
 
         return Renderer(
             prepared.project,
@@ -129,23 +129,23 @@ class Bench:
             progress=progress,
         )
 
-    def prepared(self, candidate: Candidate) -> Prepared:
-        return prepare(self.project, self.pipeline, candidate, self.options, self.size)
+    def prepare(self, candidate: Candidate) -> Prepared:
+        return prepare_candidate(self.project, self.pipeline, candidate, self.options, self.size)
 
-    def pictures(
-        self, candidate: Candidate, seeds: list[int], told: Callable[[int, float], None]
+    def average_pictures(
+        self, candidate: Candidate, seeds: list[int], report_part: Callable[[int, float], None]
     ) -> tuple[Moments, Mask | None]:
-        """Mean and variance of a render a seed, and the candidate's mask."""
-        prepared = self.prepared(candidate)
+        """Render once for each seed; return mean and variance, and the candidate's mask."""
+        prepared = self.prepare(candidate)
         prepared.options.seed = seeds[0]
-        renderer = self._renderer(prepared, lambda part: told(done, part))
+        renderer = self._make_renderer(prepared, lambda part: report_part(done, part))
         moments: Moments | None = None
         mask: Mask | None = None
         try:
             for done, seed in enumerate(seeds):
                 frame = renderer.render(self.frame) if done == 0 else renderer.again(seed)
-                image = picture(frame, renderer.plan.output == WINDOW)
-                mask = mask_of(frame, self.pipeline)
+                image = to_picture(frame, renderer.plan.output == WINDOW)
+                mask = find_traced_pixels(frame, self.pipeline)
                 moments = moments or Moments(image.shape)
                 moments.add(image)
         finally:
@@ -159,46 +159,44 @@ class Bench:
         reference: Reference,
         runs: int,
         first_seed: int,
-        told: Callable[[int, float], None],
+        report_part: Callable[[int, float], None],
     ) -> Measured:
-        """Render once to warm up, then ``runs`` times, a seed each."""
-        prepared = self.prepared(candidate)
+        """Render once to warm up, then ``runs`` times with different seeds."""
+        prepared = self.prepare(candidate)
         done = 0
-        renderer = self._renderer(prepared, lambda part: told(done, part))
+        renderer = self._make_renderer(prepared, lambda part: report_part(done, part))
         found, moments = Measured(candidate), Moments(reference.mean.shape)
         try:
             warm = renderer.render(self.frame)
             found.set_up_ms = warm.report["setup_ms"]
-            found.build_ms = stage_times(warm.report, 0.0)["build"]
+            found.build_ms = sum_stages(warm.report, 0.0)["build"]
             found.machine = warm.report["machine"]
             for run in range(runs):
                 done = run + 1
-                told(done, 0.0)
+                report_part(done, 0.0)
                 frame = renderer.again(first_seed + run)
-                image = enlarged(picture(frame, renderer.plan.output == WINDOW), reference.shape)
+                image = enlarge(to_picture(frame, renderer.plan.output == WINDOW), reference.shape)
                 moments.add(image)
-                self._note(found, frame, image, renderer.capture_ms, reference)
-            told(runs + 1, 0.0)
+                self._record(found, frame, image, renderer.capture_ms, reference)
+            report_part(runs + 1, 0.0)
         finally:
             renderer.close()
         for region in reference.regions:
             where = reference.region(region)
-            found.split[region] = bias_and_variance(
-                moments, reference.mean, reference.variance, where
-            )
+            found.split[region] = split_error(moments, reference.mean, reference.variance, where)
         return found
 
-    def _note(
+    def _record(
         self, found: Measured, frame: Frame, image: F64, capture_ms: float, reference: Reference
     ) -> None:
         report = frame.report
         found.last, found.samples = image.astype(np.float32), frame.samples
         found.nonfinite += int((~np.isfinite(image).all(axis=2)).sum())
         regions = {name: reference.region(name) for name in reference.regions}
-        for region, errors in measure(image, reference.mean, regions).items():
+        for region, errors in measure_errors(image, reference.mean, regions).items():
             found.errors.setdefault(region, []).append(errors)
         found.ms.append(report["frames"][0]["ms"])
-        for name, ms in stage_times(report, capture_ms).items():
+        for name, ms in sum_stages(report, capture_ms).items():
             found.stages.setdefault(name, []).append(ms)
         found.rays = report["totals"]["rays"]
         found.passes = {

@@ -10,7 +10,12 @@ from nau_py.accuracy.cost_run import CostRun
 from nau_py.accuracy.front_chart import draw_charts
 from nau_py.accuracy.metrics import F64
 from nau_py.accuracy.report import CostReport
-from nau_py.accuracy.tables import comparisons, effects, sentences, settings
+from nau_py.accuracy.tables import (
+    make_comparison_grid,
+    make_effect_grid,
+    make_setting_grid,
+    write_sentences,
+)
 from nau_py.reporting.chart import MISSING
 from nau_py.reporting.page import render_template, shrink
 from nau_py.reporting.pixels import Array, Bytes, quantize
@@ -72,18 +77,18 @@ def write_page(run: CostRun) -> str:
         "cost.html",
         title=f"{report.project}, {report.pipeline}: accuracy against time",
         about=about,
-        sentences=sentences(report),
+        sentences=write_sentences(report),
         charts=draw_charts(report, regions),
         missing=MISSING,
-        comparisons=comparisons(report),
+        comparisons=make_comparison_grid(report),
         key=list(colours.items()),
         bars=_make_bars(report, colours),
         crop_place=place,
         gain=f"{MAP_GAIN:g}",
         crops=crops,
         maps=_make_maps(run),
-        settings=settings(report),
-        effects=effects(report),
+        settings=make_setting_grid(report),
+        effects=make_effect_grid(report),
     )
 
 

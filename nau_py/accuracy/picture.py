@@ -1,4 +1,4 @@
-"""Frames as the pictures that are compared."""
+"""Frames as pictures for comparison."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from nau_py.run.frame import Frame
 
 
-def picture(frame: Frame, shown: bool) -> F64:
-    """RGB of a frame, float64 (h, w, 3). ``shown``: by a window, which clamps to 0..1."""
+def to_picture(frame: Frame, shown: bool) -> F64:
+    """Return the RGB of a frame, float64 (h, w, 3); ``shown``: clamp to 0..1, as a window does."""
     values = frame.image.astype(np.float64)
     if frame.image.dtype.kind in "iu":
         values /= float(np.iinfo(frame.image.dtype).max)
@@ -27,8 +27,8 @@ def picture(frame: Frame, shown: bool) -> F64:
     return np.clip(values, 0.0, 1.0) if shown else values
 
 
-def enlarged(image: F64, shape: tuple[int, int]) -> F64:
-    """``image`` at (height, width), interpolated bilinearly where it has another size."""
+def enlarge(image: F64, shape: tuple[int, int]) -> F64:
+    """Resize ``image`` to (height, width) by bilinear interpolation."""
     if image.shape[:2] == shape:
         return image
     size = shape[1], shape[0]
@@ -43,9 +43,9 @@ def enlarged(image: F64, shape: tuple[int, int]) -> F64:
     return np.stack(planes, axis=2).astype(np.float64)
 
 
-def mask_of(frame: Frame, pipeline: Pipeline) -> Mask | None:
-    """The pixels that the mask of the raytrace pass selects, (h, w), row 0 at the top; None
-    without a mask."""
+def find_traced_pixels(frame: Frame, pipeline: Pipeline) -> Mask | None:
+    """Return the pixels that the mask of the raytrace pass selects, bool (h, w), row 0 at the top;
+    None without a mask."""
     for pass_ in pick_raytrace_passes(pipeline.passes):
         weights = read_mask(pass_, frame.targets)
         if weights is not None:

@@ -1,4 +1,4 @@
-"""References: many samples a pixel, kept from run to run by what they depend on."""
+"""References: pictures of many samples a pixel, cached by their inputs."""
 
 from __future__ import annotations
 
@@ -19,19 +19,18 @@ from nau_py.process.files import write_bytes
 from nau_py.run.used_files import used_files
 
 BATCHES = 2
-"""Renders with different seeds that a reference is the mean of: from their difference its own
-error is known."""
+"""Renders with different seeds that are averaged; their difference gives the error of the mean."""
 FIRST_SEED = 1_000_003
-"""Far from the seeds of candidates, so that no candidate is a part of the reference."""
+"""First seed, far from those of candidates: no candidate is a part of the reference."""
 KEPT = 24
-"""References in the cache; the oldest go."""
+"""Largest number of references in the cache; the oldest are removed."""
 
 
-def content_key(bench: Bench, candidate: Candidate, spp: int, device: str) -> str:
-    """What the reference depends on, as a hash: files, settings, size, frame, this package, the
-    OpenGL driver."""
+def hash_content(bench: Bench, candidate: Candidate, spp: int, device: str) -> str:
+    """Hash the inputs of a reference: files, settings, size, frame, this package, the OpenGL
+    driver."""
     digest = hashlib.sha256()
-    said = (
+    inputs = (
         nau_py.version.__version__,
         device,
         bench.pipeline.name,
@@ -44,7 +43,7 @@ def content_key(bench: Bench, candidate: Candidate, spp: int, device: str) -> st
         bench.options.effects,
         bench.options.texture_filter,
     )
-    digest.update(repr(said).encode())
+    digest.update(repr(inputs).encode())
     package = Path(nau_py.version.__file__).parent
     own = (p for p in package.rglob("*") if p.suffix != ".pyc")
     for path in [*sorted(own), *sorted(used_files(bench.project))]:
@@ -53,29 +52,31 @@ def content_key(bench: Bench, candidate: Candidate, spp: int, device: str) -> st
     return digest.hexdigest()
 
 
-def reference(
+def render_reference(
     bench: Bench,
     candidate: Candidate,
     spp: int,
     device: str,
-    told: Callable[[float], None],
+    report_part: Callable[[float], None],
     keep: bool = True,
 ) -> Reference:
     """Render ``candidate`` with ``spp`` samples a pixel in all, or take it from the cache."""
     folder = make_cache_folder("references") if keep else None
-    path = None if folder is None else folder / f"{content_key(bench, candidate, spp, device)}.npz"
+    path = None if folder is None else folder / f"{hash_content(bench, candidate, spp, device)}.npz"
     rays = bool(pick_raytrace_passes(bench.pipeline.passes))
-    label = candidate.but("spp", spp).label if rays else candidate.label
-    batch = candidate.but("spp", -(-spp // BATCHES)) if rays else candidate
+    label = candidate.with_value("spp", spp).label if rays else candidate.label
+    batch = candidate.with_value("spp", -(-spp // BATCHES)) if rays else candidate
     if path is not None and path.is_file():
         found = _load(path, spp, label)
         if found is not None:
-            told(1.0)
+            report_part(1.0)
             return found
     seeds = [FIRST_SEED + bench.options.seed + k for k in range(BATCHES)]
-    moments, _ = bench.pictures(batch, seeds, lambda done, part: told((done + part) / BATCHES))
+    moments, _ = bench.average_pictures(
+        batch, seeds, lambda done, part: report_part((done + part) / BATCHES)
+    )
     own = Candidate((("spp", 1), ("mask", "project"))) if candidate["mask"] else None
-    mask = bench.pictures(own, [0], lambda done, part: None)[1] if own else None
+    mask = bench.average_pictures(own, [0], lambda done, part: None)[1] if own else None
     made = Reference(moments.mean, moments.variance / BATCHES, mask, spp, label)
     if path is not None:
         _save(path, made)
@@ -95,11 +96,11 @@ def _load(path: Path, spp: int, label: str) -> Reference | None:
                 cached=True,
             )
     except (OSError, ValueError, KeyError, EOFError):
-        return None  # it is rendered anew, and written over
+        return None  # it is rendered again
 
 
 def _save(path: Path, made: Reference) -> None:
-    """Keep a reference; where that cannot be, the next run renders it again."""
+    """Write a reference into the cache; errors are ignored, the next run renders it again."""
     stream = io.BytesIO()
     arrays: dict[str, Any] = {
         "mean": made.mean.astype(np.float32),

@@ -1,4 +1,4 @@
-"""Finding the number of samples that just meets a target, between and beyond those of a ladder."""
+"""Search for the least number of samples that meets a target, between and beyond a ladder."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ NEAR = 1.3
 """Ratio of neighbouring numbers that is fine enough."""
 
 
-def next_number(tried: Sequence[tuple[int, bool]], most: int) -> int | None:
-    """The number to try next; None where the least one that passes is known well enough.
+def choose_number(tried: Sequence[tuple[int, bool]], most: int) -> int | None:
+    """Choose the number to try next; None if the least one that passes is known well enough.
 
-    ``tried``: numbers by growing size, and whether each passes; what passes once does so for all
-    greater ones. Up to ``most``.
+    ``tried``: numbers by growing size, each with True if it passes; all greater numbers pass, too.
+    ``most``: the greatest number to try.
     """
     first = next((i for i, (_, passes) in enumerate(tried) if passes), None)
     if first is None:
@@ -28,15 +28,15 @@ def next_number(tried: Sequence[tuple[int, bool]], most: int) -> int | None:
     return round(2 ** ((log2(low) + log2(high)) / 2))
 
 
-def refine(
+def refine_number(
     tried: Callable[[], Sequence[tuple[int, bool]]],
     add: Callable[[int], None],
     most: int,
     steps: int = 8,
 ) -> None:
-    """``add`` numbers until the least that passes is known, in at most so many ``steps``."""
+    """Call ``add`` until the least number that passes is known, at most ``steps`` times."""
     for _ in range(steps):
-        number = next_number(tried(), most)
+        number = choose_number(tried(), most)
         if number is None:
             return
         add(number)

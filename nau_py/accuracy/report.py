@@ -1,4 +1,4 @@
-"""What a cost run reports: data with a published schema (docs/cost-1.schema.json)."""
+"""Report of a cost run: data with a published schema (docs/cost-1.schema.json)."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ class TimeSpread(_Part):
 
 
 class SettingCost(_Part):
-    """One setting of the knobs: what it costs, and how far from the reference it is."""
+    """One setting of the knobs: its cost, and its errors against the reference."""
 
     label: str
     values: dict[str, float | int | str]
-    base: bool = Field(description="Whether this is the project as it is.")
+    base: bool = Field(description="True for the unchanged project.")
     time: TimeSpread
     set_up_ms: float
     build_ms: float
@@ -59,17 +59,17 @@ class SettingCost(_Part):
     )
     rays: dict[str, int]
     pixels: int
-    est_error: float | None = Field(description="What a run itself says of its traced pixels.")
+    est_error: float | None = Field(description="Estimate of a run itself for its traced pixels.")
     nonfinite: int = Field(description="Pixels that were not finite, all runs.")
     errors: dict[str, RegionErrors]
     on_front: bool
     better_than_reference: bool = Field(
-        description="It is nearer to the truth than the reference: it is shown, not ranked."
+        description="More accurate than the reference: shown, not ranked."
     )
 
 
 class ReferenceFacts(_Part):
-    """What was compared with, and how exact that is itself."""
+    """The reference, and its own error."""
 
     label: str
     spp: int
@@ -78,7 +78,7 @@ class ReferenceFacts(_Part):
 
 
 class Answer(_Part):
-    """The setting that answers a question, and the words."""
+    """The setting that answers a question, and a sentence."""
 
     question: str
     setting: str | None
@@ -96,7 +96,7 @@ class Comparison(_Part):
 
 
 class Verified(_Part):
-    """A promise, rendered again with new seeds."""
+    """A promise, checked by renders with new seeds."""
 
     promise: str
     setting: str
@@ -105,7 +105,7 @@ class Verified(_Part):
 
 
 class EffectCost(_Part):
-    """What leaving one effect out saves, and what it changes."""
+    """Time and rays that leaving one effect out saves, and the change of the picture."""
 
     effect: str
     called_for: bool
@@ -143,13 +143,13 @@ def to_json(report: CostReport) -> str:
     return report.model_dump_json(indent=2, by_alias=True) + "\n"
 
 
-def schema() -> dict[str, Any]:
-    """The JSON Schema of the report."""
+def make_schema() -> dict[str, Any]:
+    """Make the JSON Schema of the report."""
     return {"$id": SCHEMA} | CostReport.model_json_schema(by_alias=True)
 
 
 def to_csv(report: CostReport) -> str:
-    """A row a setting: knobs, time, stages, rays, errors by region with intervals."""
+    """Write a row for each setting: knobs, time, stages, rays, errors by region with intervals."""
     knobs = list(dict.fromkeys(k for s in report.settings for k in s.values))
     stages = list(dict.fromkeys(k for s in report.settings for k in s.stages))
     names = ["mse", "rmse", "relmse", "psnr", "ssim", "flip"]

@@ -1,4 +1,4 @@
-"""What repeated runs say: means with intervals, bias and variance, rates of convergence."""
+"""Statistics of repeated runs: means with intervals, bias and variance, rates of convergence."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ _T95 = (
 """Two-sided 95 % quantiles of Student's t for 1 to 30 degrees of freedom."""
 
 
-def t95(degrees: int) -> float:
-    """The two-sided 95 % quantile of Student's t; beyond 30 degrees a little too wide."""
+def find_t95(degrees: int) -> float:
+    """Return the two-sided 95 % quantile of Student's t; beyond 30 degrees a little too wide."""
     if degrees < 1:
         return float("inf")
     return _T95[degrees - 1] if degrees <= len(_T95) else _T95[-1]
@@ -34,13 +34,13 @@ class Interval:
     high: float
 
 
-def interval(values: Sequence[float]) -> Interval:
-    """Mean of ``values`` with Student's 95 % interval; without one for a single value."""
+def compute_interval(values: Sequence[float]) -> Interval:
+    """Compute the mean of ``values`` with Student's 95 % interval; a single value has none."""
     data = np.asarray(values, np.float64)
     mean = float(data.mean())
     if len(data) < 2 or not np.isfinite(mean):
         return Interval(mean, mean, mean)
-    half = t95(len(data) - 1) * float(data.std(ddof=1)) / sqrt(len(data))
+    half = find_t95(len(data) - 1) * float(data.std(ddof=1)) / sqrt(len(data))
     return Interval(mean, mean - half, mean + half)
 
 
@@ -53,7 +53,7 @@ class Spread:
     high: float
 
 
-def spread(values: Sequence[float]) -> Spread:
+def compute_spread(values: Sequence[float]) -> Spread:
     data = np.asarray(values, np.float64)
     return Spread(float(np.median(data)), float(data.min()), float(data.max()))
 
@@ -74,20 +74,20 @@ class Moments:
 
     @property
     def variance(self) -> F64:
-        """Sample variance of each value; nan below two pictures."""
+        """Sample variance of each value; nan for fewer than two pictures."""
         if self.number < 2:
             return np.full_like(self.mean, np.nan)
         return self._squares / (self.number - 1)
 
 
-def bias_and_variance(
+def split_error(
     runs: Moments, reference: F64, reference_variance: F64, where: Mask
 ) -> tuple[float, float]:
-    """(bias², variance) of one run, means over the chosen pixels; MSE = bias² + variance.
+    """Split the mean squared error of one run into (bias², variance) over the selected pixels.
 
     The mean of n runs is off by bias, by variance / n, and by the error of the reference: both are
-    taken off, so that noise does not count as bias. Below zero is zero. Pixels that were not finite
-    in some run are left out.
+    subtracted, so that noise does not count as bias. Negative values clamp to 0. Pixels that were
+    not finite in some run are left out.
     """
     where = where & np.isfinite(runs.mean).all(axis=-1) & np.isfinite(reference).all(axis=-1)
     if not where.any():
@@ -100,8 +100,8 @@ def bias_and_variance(
     return max(float(bias.mean()), 0.0), float(variance.mean())
 
 
-def exponent(costs: Sequence[float], errors: Sequence[float]) -> float | None:
-    """p of error ~ cost^p by least squares in logarithms; None where nothing can be fitted."""
+def fit_exponent(costs: Sequence[float], errors: Sequence[float]) -> float | None:
+    """Fit p of error ~ cost^p by least squares in logarithms; None for fewer than two costs."""
     pairs = [(log(c), log(e)) for c, e in zip(costs, errors) if c > 0 and e > 0]
     if len({x for x, _ in pairs}) < 2:
         return None

@@ -1,4 +1,4 @@
-"""The tables of a cost run, once for terminal, page and Markdown."""
+"""Tables of a cost run for terminal, page and Markdown."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from nau_py.accuracy.report import CostReport, Estimate, RegionErrors
 from nau_py.reporting.table import Grid
 
 
-def number(value: float | None, digits: int = 3) -> str:
-    """So many significant digits; empty for none."""
+def format_number(value: float | None, digits: int = 3) -> str:
+    """Write a number with ``digits`` significant digits; nothing for None."""
     return "" if value is None else f"{value:.{digits}g}"
 
 
-def _root(value: float | None) -> str:
-    return number(None if value is None else value**0.5)
+def _format_root(value: float | None) -> str:
+    return format_number(None if value is None else value**0.5)
 
 
-def _half(found: Estimate) -> str:
-    """Half the width of the interval."""
+def _format_half_width(found: Estimate) -> str:
+    """Write half the width of the interval."""
     high = found.interval[1]
     return "" if high is None or found.mean is None else f"±{high - found.mean:.1g}"
 
@@ -25,21 +25,21 @@ _ERRORS = ("rmse", "95 %", "relMSE", "PSNR", "SSIM", "FLIP", "bias", "noise")
 _BRIEF = ("rmse", "95 %", "relMSE", "bias")
 
 
-def _errors(e: RegionErrors) -> dict[str, str]:
+def _format_errors(e: RegionErrors) -> dict[str, str]:
     return {
-        "rmse": number(e.rmse.mean),
-        "95 %": _half(e.rmse),
-        "relMSE": number(e.relmse.mean),
-        "PSNR": number(e.psnr.mean),
-        "SSIM": number(e.ssim.mean, 4),
-        "FLIP": number(e.flip.mean) if e.flip else "",
-        "bias": _root(e.bias2),
-        "noise": _root(e.variance),
+        "rmse": format_number(e.rmse.mean),
+        "95 %": _format_half_width(e.rmse),
+        "relMSE": format_number(e.relmse.mean),
+        "PSNR": format_number(e.psnr.mean),
+        "SSIM": format_number(e.ssim.mean, 4),
+        "FLIP": format_number(e.flip.mean) if e.flip else "",
+        "bias": _format_root(e.bias2),
+        "noise": _format_root(e.variance),
     }
 
 
-def settings(report: CostReport, brief: bool = False) -> Grid:
-    """All settings: time, rays, errors by region, whether on the front."""
+def make_setting_grid(report: CostReport, brief: bool = False) -> Grid:
+    """Make the table of all settings: time, rays, errors by region, front."""
     columns = _BRIEF if brief else _ERRORS
     regions = list(report.settings[0].errors)
     head = ["setting", "ms", "least to most", "rays"]
@@ -54,16 +54,16 @@ def settings(report: CostReport, brief: bool = False) -> Grid:
             f"{sum(s.rays.values()):,}",
         ]
         for region in regions:
-            errors = _errors(s.errors[region])
+            errors = _format_errors(s.errors[region])
             row += [errors[name] for name in columns]
         mark = "better than the reference" if s.better_than_reference else ""
-        rows.append((*row, number(s.est_error), "yes" if s.on_front else mark))
+        rows.append((*row, format_number(s.est_error), "yes" if s.on_front else mark))
     strong = frozenset(k for k, s in enumerate(report.settings) if s.on_front)
     return Grid("All settings", (*head, "est. error", "front"), tuple(rows), strong)
 
 
-def samples(report: CostReport) -> Grid | None:
-    """What more samples buy over the fewest; None without a ladder of them."""
+def make_sample_grid(report: CostReport) -> Grid | None:
+    """Make the table of gains by more samples; None without a ladder of samples."""
     base = next(s for s in report.settings if s.base)
     line = [
         s
@@ -84,8 +84,8 @@ def samples(report: CostReport) -> Grid | None:
                 str(s.values["spp"]),
                 f"{s.time.median:,.0f}",
                 f"{sampling:,.0f}",
-                number(error),
-                number(gain),
+                format_number(error),
+                format_number(gain),
             )
         )
     title = f"What {', '.join(r[0] for r in rows[1:])} samples buy over {rows[0][0]}"
@@ -93,8 +93,8 @@ def samples(report: CostReport) -> Grid | None:
     return Grid(title, head, tuple(rows))
 
 
-def comparisons(report: CostReport) -> Grid:
-    """The best other setting at equal time, and at equal error."""
+def make_comparison_grid(report: CostReport) -> Grid:
+    """Make the table of the best other settings at equal time and at equal error."""
     rows = tuple(
         (
             c.setting,
@@ -109,8 +109,8 @@ def comparisons(report: CostReport) -> Grid:
     return Grid("Equal time, equal error", head, rows)
 
 
-def effects(report: CostReport) -> Grid | None:
-    """What each effect is worth; None where that was not asked."""
+def make_effect_grid(report: CostReport) -> Grid | None:
+    """Make the table of the cost of each effect; None if it was not measured."""
     if not report.effects:
         return None
     rows = tuple(
@@ -119,8 +119,8 @@ def effects(report: CostReport) -> Grid | None:
             "yes" if e.called_for else "no",
             f"{e.rays:,}",
             f"{e.ms:,.0f}",
-            number(e.rmse),
-            number(e.largest),
+            format_number(e.rmse),
+            format_number(e.largest),
             f"{e.pixels:,}",
         )
         for e in report.effects
@@ -129,13 +129,13 @@ def effects(report: CostReport) -> Grid | None:
     return Grid("What each effect is worth", head, rows)
 
 
-def sentences(report: CostReport) -> list[str]:
-    """The answers in words."""
+def write_sentences(report: CostReport) -> list[str]:
+    """Write the answers as sentences."""
     where = "inside the mask" if report.region == "mask" else "over the whole picture"
     own = report.reference.own_rmse.get(report.region)
     found = [
-        f"Reference: {report.reference.label}; its own error is about {number(own, 2)} ({where}, "
-        "root mean square)."
+        f"Reference: {report.reference.label}; its own error is about {format_number(own, 2)} "
+        f"({where}, root mean square)."
     ]
     if report.knee:
         found.append(f"Knee of the front: {report.knee}.")
@@ -148,8 +148,9 @@ def sentences(report: CostReport) -> list[str]:
     for v in report.verified:
         low, high = v.found.interval
         kept = "kept" if v.kept else "NOT kept"
+        mean, least, most = (format_number(value) for value in (v.found.mean, low, high))
         found.append(
             f"Promise '{v.promise}' by {v.setting}, rendered again with new seeds: "
-            f"{number(v.found.mean)} ({number(low)} to {number(high)}), {kept}."
+            f"{mean} ({least} to {most}), {kept}."
         )
     return found + report.notes

@@ -1,4 +1,4 @@
-"""What the commands share: exit statuses, diagnostics on stderr, no traceback for bad input."""
+"""Common parts of the commands: exit statuses, diagnostics on stderr, no traceback."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 
 import typer
 
+from nau_py.api import lint
 from nau_py.diagnostics.diagnostic import Diagnostic, error
 from nau_py.diagnostics.errors import NauError, OutputError
 from nau_py.diagnostics.location import NOWHERE
@@ -26,9 +27,7 @@ def say(diagnostics: Iterable[Diagnostic], sources: Mapping[str, str]) -> None:
 
 
 def stop_if_unreadable(project: Project) -> None:
-    """Say what is wrong and exit with status 1 where a file was not read (rules X001, X002)."""
-    from nau_py.api import lint
-
+    """Report files that could not be read (rules X001, X002), and exit with status 1."""
     broken = [d for d in lint(project) if d.rule in ("X001", "X002")]
     if broken:
         say(broken, project.sources)

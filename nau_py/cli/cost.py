@@ -76,7 +76,7 @@ def run(
     debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
 ) -> None:
     """Measure what accuracy costs in time."""
-    from nau_py.accuracy.judge import RANKED
+    from nau_py.accuracy.ranking import RANKED
 
     if measure not in RANKED:
         raise typer.BadParameter(f"'{measure}' does not rank; one of {', '.join(RANKED)} does")
@@ -86,7 +86,7 @@ def run(
         raise typer.BadParameter("--apply needs --target-error or --budget-time")
     window, knobs = size_of(size), _knobs(spp, knob or [])
     import nau_py
-    from nau_py.accuracy.cost import Wishes, cost
+    from nau_py.accuracy.cost import CostRequest, measure_cost
     from nau_py.cli.cost_output import print_cost, whole_progress, write_all
     from nau_py.passes.frame import RunOptions
     from nau_py.passes.ptx.compiled import needs_supervision
@@ -101,23 +101,23 @@ def run(
     options = RunOptions(
         seed=seed, threads=threads, allow_programs=tuple(str(p) for p in allow_programs or ())
     )
-    wishes = Wishes(
+    request = CostRequest(
         knobs, reference, runs, combine, measure, region, target_error, budget_time,
         keep=not no_cache, effects=effects,
     )  # fmt: skip
 
     def work() -> int:
-        from nau_py.accuracy.document import document
+        from nau_py.accuracy.document import write_document
 
         with whole_progress(quiet) as progress:
-            made = cost(loaded, options, wishes, pipeline, window, frame, progress)
+            made = measure_cost(loaded, options, request, pipeline, window, frame, progress)
         if not quiet:
             say((d for d in made.diagnostics if d.severity is Severity.WARNING), loaded.sources)
             print_cost(made.report)
         if out is not None:
             write_all(out, made)
         if markdown is not None:
-            write_result(markdown, document(made.report))
+            write_result(markdown, write_document(made.report))
         if apply:
             _apply(loaded, made)
         unmet = [a for a in made.report.answers if a.setting is None]
@@ -129,14 +129,14 @@ def run(
 
 
 def _apply(project: Project, made: CostRun) -> None:
-    from nau_py.accuracy.apply import apply
+    from nau_py.accuracy.apply import apply_setting
     from nau_py.run.pipeline_choice import choose_pipeline
 
     if made.chosen is None:
         sys.stderr.write("nothing to write: no setting meets what was asked\n")
         return
     chosen = choose_pipeline(project, made.report.pipeline)
-    said = apply(project, chosen, made.chosen, made.measured[0].candidate)
+    said = apply_setting(project, chosen, made.chosen, made.measured[0].candidate)
     file = project.file.location.file
     sys.stderr.write(f"{file}: {'; '.join(said) or 'nothing to change'}\n")
 

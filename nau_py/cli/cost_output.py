@@ -1,4 +1,4 @@
-"""What ``nau-cost`` shows and writes: progress, table, files."""
+"""Output of ``nau-cost``: progress, table, files."""
 
 from __future__ import annotations
 
@@ -62,14 +62,16 @@ def whole_progress(quiet: bool) -> Iterator[Callable[[str, float], None]]:
 
 
 def print_cost(report: CostReport) -> None:
-    """The table of settings, and the answers."""
-    from nau_py.accuracy.tables import effects, sentences, settings
+    """Print the table of settings, and the answers."""
+    from nau_py.accuracy.tables import make_effect_grid, make_setting_grid, write_sentences
 
     console = Console(width=None if Console().is_terminal else 160)
-    console.print(_table(settings(report, brief=True), f"{report.project}: {report.pipeline}"))
-    for line in sentences(report):
+    console.print(
+        _table(make_setting_grid(report, brief=True), f"{report.project}: {report.pipeline}")
+    )
+    for line in write_sentences(report):
         console.print(line, highlight=False)
-    worth = effects(report)
+    worth = make_effect_grid(report)
     if worth is not None:
         console.print(_table(worth, worth.title))
 

@@ -9,9 +9,14 @@ from typing import Annotated
 
 import typer
 
+from nau_py.api import lint as check
 from nau_py.cli.common import FAILED, say
 from nau_py.diagnostics.diagnostic import Diagnostic, error
 from nau_py.diagnostics.location import Location
+from nau_py.diagnostics.reporters import format_path, must_fail, to_json, to_sarif, to_text
+from nau_py.formats.load import is_library, load_library, load_project
+from nau_py.syntax.edit import plan_fixes
+from nau_py.version import __version__
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 _SUFFIXES = (".xml", ".yaml", ".yml", ".mlib")
@@ -56,9 +61,6 @@ def lint(
     fix: Annotated[bool, typer.Option(help="Apply the safe fixes; report what is left.")] = False,
 ) -> None:
     """Check projects: exit status 1 where one has an error."""
-    from nau_py.diagnostics.reporters import must_fail, to_json, to_sarif, to_text
-    from nau_py.version import __version__
-
     files = collect(paths)
     found, sources = _check(files, models)
     if fix and _fix(found):
@@ -74,10 +76,7 @@ def lint(
 
 
 def _check(files: list[Path], models: bool) -> tuple[list[Diagnostic], dict[str, str]]:
-    """All findings, and the texts that they are about."""
-    from nau_py.api import lint as check
-    from nau_py.formats.load import is_library, load_library, load_project
-
+    """Return all findings, and the texts of the files."""
     found: list[Diagnostic] = []
     sources: dict[str, str] = {}
     for path in files:
@@ -89,9 +88,6 @@ def _check(files: list[Path], models: bool) -> tuple[list[Diagnostic], dict[str,
 
 def _fix(found: list[Diagnostic]) -> int:
     """Apply the safe fixes; returns how many files changed. Says on stderr what was done."""
-    from nau_py.diagnostics.reporters import format_path
-    from nau_py.syntax.edit import plan_fixes
-
     safe = [next((f for f in d.fixes if f.safe), None) for d in found]
     files, made = plan_fixes(f for f in safe if f is not None)
     written: set[str] = set()

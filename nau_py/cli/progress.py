@@ -10,7 +10,7 @@ from nau_py.passes.frame import Progress, no_progress
 
 @contextmanager
 def progress_bar(quiet: bool) -> Iterator[Progress]:
-    """A callback that shows how far each pass is; silent in a pipe and with ``quiet``."""
+    """Give a callback that shows the progress of each pass; silent in a pipe and with ``quiet``."""
     from rich.console import Console
 
     console = Console(stderr=True)

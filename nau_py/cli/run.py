@@ -40,7 +40,7 @@ def _parameters(texts: list[str]) -> dict[str, str]:
 
 
 class Programs(StrEnum):
-    """What a pass of class ``rt`` runs where both are there."""
+    """Programs that a pass of class ``rt`` runs if both are there."""
 
     PTX = "ptx"
     PY = "py"
@@ -222,7 +222,7 @@ def _render(
     last: int,
     show_mask: bool,
 ) -> list[dict[str, Any]]:
-    """Render frames ``first`` to ``last``, or to where the pipelines end; write what is asked."""
+    """Render frames ``first`` to ``last``, or to the end of the pipelines; write the outputs."""
     from nau_py.reporting.output import write_image, write_targets
     from nau_py.run.mask_overlay import mask_overlay
 

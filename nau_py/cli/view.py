@@ -17,8 +17,8 @@ app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 HOST = "127.0.0.1"
 
 
-def bound(port: int) -> socket.socket | None:
-    """A socket that listens on the loopback interface; None where the port is taken."""
+def open_socket(port: int) -> socket.socket | None:
+    """Open a socket that listens on the loopback interface; None if the port is taken."""
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
@@ -59,7 +59,7 @@ def view(
     from nau_py.viewer.render_thread import RenderThread, make_worker
     from nau_py.viewer.state import ViewerState
 
-    listening = bound(port)
+    listening = open_socket(port)
     if listening is None:
         sys.stderr.write(f"nau-view: port {port} is taken; another one, or 0 for a free one\n")
         raise typer.Exit(FAILED)

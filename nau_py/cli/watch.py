@@ -27,7 +27,7 @@ def run_watch(
     frame: int,
     show: Callable[[Frame], None],
 ) -> int:
-    """Render, then follow the files. A wrong state is said on stderr, and the last good picture
+    """Render, then follow the files. Errors are reported on stderr, and the last good picture
     stays. Ends by Ctrl-C, with exit status 0."""
     reload = HotReload(path, load, make, frame, output)
     sys.stderr.write(f"{strftime('%H:%M:%S')} watching {path}; Ctrl-C ends\n")

@@ -1,4 +1,4 @@
-"""Writing files so that a reader sees the old one or the new one, never half of it."""
+"""Write files whole: a reader sees the old or the new one, never half of it."""
 
 from __future__ import annotations
 
@@ -23,5 +23,5 @@ def write_bytes(path: Path, data: bytes) -> None:
 
 
 def write_text(path: Path, text: str) -> None:
-    """:func:`write_bytes` in UTF-8."""
+    """Write a text in UTF-8 by :func:`write_bytes`."""
     write_bytes(path, text.encode("utf-8"))

@@ -1,4 +1,4 @@
-"""Paths as projects write them: backslashes and the wrong letter case (docs/format.md, 1.5)."""
+"""Paths of projects, with backslashes and wrong letter case (docs/format.md, 1.5)."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from pathlib import Path
 
 @dataclass(frozen=True, slots=True)
 class Resolved:
-    """A path of a project: where it leads, and whether something is there.
+    """Path of a project as resolved, and the existing file or folder, if any.
 
-    ``on_disk`` differs from ``path`` where only the letter case of the written path was wrong.
+    ``on_disk`` differs from ``path`` if only the letter case of the written path was wrong.
     """
 
     path: Path
@@ -40,12 +40,12 @@ def _entries(folder: str) -> dict[str, str]:
 
 
 def forget_folders() -> None:
-    """Look at folders anew: for processes that live longer than their files."""
+    """Forget the entries of folders, for processes that live longer than their files."""
     _entries.cache_clear()
 
 
 def resolve(folder: Path, text: str) -> Resolved:
-    """Where ``text``, written in a file of ``folder``, leads."""
+    """Resolve the path ``text``, written in a file of ``folder``."""
     path = Path(os.path.normpath(folder / text.strip().replace("\\", "/")))
     if path.exists():
         return Resolved(path, path)
@@ -62,7 +62,7 @@ def resolve(folder: Path, text: str) -> Resolved:
 
 
 def similar(resolved: Resolved) -> list[str]:
-    """Names in the folder of a missing file that differ from it little."""
+    """List names in the folder of a missing file that are similar to its name."""
     from difflib import get_close_matches
 
     folder = resolved.path.parent

@@ -29,7 +29,7 @@ def _npy(image: NDArray[Any]) -> bytes:
 
 
 def exr(path: Path, image: NDArray[Any]) -> bytes:
-    """An EXR file's bytes; ``path`` is for the message. Raises
+    """Encode an EXR file; ``path`` is for the message. Raises
     :class:`~nau_py.OutputError` without the extra."""
     try:
         import OpenEXR  # type: ignore[import-not-found,unused-ignore]

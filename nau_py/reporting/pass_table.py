@@ -69,7 +69,7 @@ def print_table(report: dict[str, Any], explain: bool) -> None:
 
 
 def _effects(effects: list[dict[str, Any]]) -> Table:
-    """What each effect is called for by, and whether it is simulated."""
+    """Make the table of effects: elements that call for each, and its status."""
     table = Table(title="effects", title_justify="left")
     for name in ("effect", "called for by", "in view", "status"):
         table.add_column(name)

@@ -39,7 +39,7 @@ class HotReload:
         self.project = load(path)
         self.renderer: Renderer | None = None
         self._sound = False
-        """Whether the last rendering succeeded: only then a part of it may be exchanged."""
+        """True if the last rendering succeeded: only then a part of it may be exchanged."""
         self.watch = FileWatch()
         self._follow(self.project)
 

@@ -1,4 +1,4 @@
-"""A camera as the file would have it with other values: its tags count in their order."""
+"""Cameras with changed values, evaluated as the file would be: in the order of the elements."""
 
 from __future__ import annotations
 
@@ -17,8 +17,10 @@ def camera_node(project: Project, name: str) -> Camera | None:
 
 
 def camera_with(project: Project, name: str, values: Values) -> CameraState | None:
-    """The state of a camera with those of ``values`` that are its own; None for none of that
-    name. The project stays as it is."""
+    """Return the state of a camera with the ``values`` of its controls; None for an unknown name.
+
+    The project does not change.
+    """
     node = camera_node(project, name)
     if node is None:
         return None
@@ -35,7 +37,7 @@ def camera_with(project: Project, name: str, values: Values) -> CameraState | No
 
 
 def _put(camera: Camera, component: str, parts: tuple[Scalar, ...]) -> None:
-    """Where saving would write it: in the place of what is there, else before all."""
+    """Set a component at the place where saving writes it: at its own place, or before all."""
     inline = camera.projection.settings if camera.projection is not None else {}
     if component in inline or (camera.projection is not None and len(parts) == 1):
         inline[component] = Setting(parts)
@@ -46,7 +48,7 @@ def _put(camera: Camera, component: str, parts: tuple[Scalar, ...]) -> None:
 
 
 def aims_from_position(camera: Camera) -> bool:
-    """Whether LOOK_AT_POINT, as the file has it, is seen from POSITION: it stands behind it."""
+    """Return True if LOOK_AT_POINT comes after POSITION in the file, and is seen from there."""
     order = [*camera.settings]
     if "POSITION" not in order:
         return True  # it would be written before all

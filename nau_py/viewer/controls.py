@@ -1,4 +1,4 @@
-"""What the viewer lets one change in a project: cameras, lights, materials, passes, interface."""
+"""Controls of the viewer: values of cameras, lights, materials, passes and the interface."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def parts_of(key: str) -> tuple[str, str, str]:
 
 
 def controls(project: Project, pipeline: Pipeline) -> list[Control]:
-    """Everything that can be changed while ``pipeline`` is shown, the interface first."""
+    """List the controls of a project while ``pipeline`` is shown, the interface first."""
     found: dict[str, Control] = {}
     for control in (
         *_interface(project),
@@ -162,7 +162,7 @@ def _materials(project: Project) -> Iterator[Control]:
 def model_material(
     project: Project, name: str, colours: dict[str, tuple[float, ...]]
 ) -> list[Control]:
-    """Controls of a material that a model brings: no file of the project can hold them."""
+    """List the controls of a material of a model: no file of the project can hold them."""
     found = []
     for component in COLOURS:
         attribute = project.registry["COLOR"].get(component)
@@ -233,7 +233,7 @@ def _interface_value(
 
 
 def home(project: Project, key: str) -> Node | None:
-    """The node whose file holds the value of a control; None where no file does."""
+    """Return the node whose file holds the value of a control; None if no file does."""
     type_, context, component = parts_of(key)
     if type_ == "CAMERA":
         camera = next((c for c in project.assets.cameras if c.name == context), None)

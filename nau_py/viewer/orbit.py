@@ -15,8 +15,7 @@ _POLE = 0.02
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Where a camera is, the unit direction it looks in, the world's up, and the distance of the
-    point that it turns about."""
+    """Position of a camera, unit view direction, the world's up, and the distance of the pivot."""
 
     position: F64
     view: F64
@@ -25,7 +24,7 @@ class Pose:
 
     @property
     def pivot(self) -> F64:
-        """The point that an orbit turns about."""
+        """Point that an orbit turns about, world space."""
         return np.asarray(self.position + self.view * self.distance)
 
     @property
@@ -51,7 +50,7 @@ def _turned(vector: F64, axis: F64, angle: float) -> F64:
 
 
 def _aimed(old: Pose, around: float, over: float) -> F64:
-    """The view turned about up, then about right, kept off the poles."""
+    """Turn the view about up, then about right, and keep it off the poles."""
     view = _turned(old.view, old.up, -around)
     angle = acos(float(np.clip(view @ old.up, -1.0, 1.0)))
     over = float(np.clip(over, angle - (pi - _POLE), angle - _POLE))
@@ -66,7 +65,7 @@ def orbit(old: Pose, around: float, over: float) -> Pose:
 
 
 def look(old: Pose, around: float, over: float) -> Pose:
-    """Turn where the camera stands."""
+    """Turn about the position of the camera."""
     return replace(old, view=_aimed(old, around, over))
 
 

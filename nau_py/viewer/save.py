@@ -1,4 +1,4 @@
-"""Writing what was changed into the files of the project: only the values that differ."""
+"""Edits that write changed values into the files of the project."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from nau_py.viewer.controls import Values, home, parts_of
 
 
 def save_edits(project: Project, values: Values) -> tuple[FileEdits, list[str]]:
-    """The edits that give the project's files ``values``, by file, and the keys that no file can
+    """Make the edits that write ``values``, by file; return them and the keys that no file can
     hold. Raises :class:`OSError` for a file that cannot be read."""
     files: FileEdits = {}
     left: list[str] = []
@@ -36,7 +36,7 @@ def save_edits(project: Project, values: Values) -> tuple[FileEdits, list[str]]:
 
 
 def write_text(value: Scalar) -> str:
-    """A number as short as single precision allows."""
+    """Write a number as short as single precision allows."""
     if isinstance(value, float):
         return f"{value:.7g}"
     return format_scalar(value)
@@ -45,7 +45,7 @@ def write_text(value: Scalar) -> str:
 def _edits(
     project: Project, document: Document, node: Node, key: str, value: tuple[Scalar, ...]
 ) -> list[Edit] | None:
-    """None where the file's form has no place for the value."""
+    """Make the edits of one value; None if the file's form has no place for it."""
     type_, _, component = parts_of(key)
     if isinstance(node, UserAttribute):
         return _default_edits(document, node, value)
@@ -73,7 +73,7 @@ def _edits(
 def _default_edits(
     document: Document, node: UserAttribute, value: tuple[Scalar, ...]
 ) -> list[Edit]:
-    """The default of a user attribute."""
+    """Make the edits of the default of a user attribute."""
     given = {**node.attribute_locations}
     vector = "rgba" if "r" in given else "xyzw"
     edits: list[Edit] = []
@@ -87,7 +87,7 @@ def _default_edits(
 
 
 def _texts(project: Project, written: Setting, value: tuple[Scalar, ...]) -> list[str]:
-    """The components as text; constants stay where they have the value."""
+    """Write the components as text; keep constants that have the value."""
     texts = [write_text(v) for v in value[: max(len(written.parts), 1)]]
     for index, part in enumerate(written.parts[: len(texts)]):
         if isinstance(part, str) and project.constants.get(part) == value[index]:

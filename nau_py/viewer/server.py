@@ -1,7 +1,8 @@
 """The viewer's server: a page, pictures and a web socket, on the loopback interface only.
 
-Everything lies below a random token, so that only who was given the address sees it. Requests must
-name the server as their host (against DNS rebinding), and web sockets come from its own page.
+All addresses begin with a random token, so that only users who got the address see the page.
+Requests must name the server as their host (against DNS rebinding), and web sockets come from its
+own page.
 """
 
 from __future__ import annotations
@@ -48,13 +49,13 @@ _HEADERS = {
     "ws: wss:; frame-ancestors 'self'",
 }
 MOST_SEQUENCE = 1000
-"""Frames of one sequence, at most."""
+"""Largest number of frames of a sequence."""
 _OTHER_STEPS = 4
-"""Pictures that are averaged for the other side of a comparison."""
+"""Number of pictures that are averaged for a comparison."""
 
 
-class Gate:
-    """Lets through what knows the token and names this server; all else is refused, alike."""
+class AccessCheck:
+    """Refuses requests without the token or with another host, all with the same answer."""
 
     def __init__(self, app: Any, token: str) -> None:
         self.app, self.token = app, token
@@ -83,7 +84,7 @@ class Gate:
 
 
 class Windows:
-    """The browsers that look: each is told the newest state when it is ready for it."""
+    """Connected windows: each gets the newest state when it is ready for it."""
 
     def __init__(self, state: ViewerState) -> None:
         self.state = state
@@ -106,8 +107,8 @@ class Windows:
             event.set()
 
 
-class Site:
-    """The routes, over one desk."""
+class ViewerRoutes:
+    """Routes of one viewer."""
 
     def __init__(self, state: ViewerState, render_thread: RenderThread, folder: Path) -> None:
         self.state, self.render_thread = state, render_thread
@@ -125,12 +126,12 @@ class Site:
         return PlainTextResponse(why + "\n", status_code=404, headers=_HEADERS)
 
     async def live(self, socket: WebSocket) -> None:
-        """Commands come, states go. A window that is slow or gone holds up nobody."""
+        """Receive commands and send states. A slow window delays no other one."""
         await socket.accept()
         event = asyncio.Event()
         event.set()
         self.windows.events.add(event)
-        talk = asyncio.create_task(self._tell(socket, event))
+        sending = asyncio.create_task(self._send_states(socket, event))
         try:
             while True:
                 await self._command(socket, await socket.receive_text())
@@ -138,9 +139,9 @@ class Site:
             return
         finally:
             self.windows.events.discard(event)
-            talk.cancel()
+            sending.cancel()
 
-    async def _tell(self, socket: WebSocket, event: asyncio.Event) -> None:
+    async def _send_states(self, socket: WebSocket, event: asyncio.Event) -> None:
         known = -1
         with contextlib.suppress(WebSocketDisconnect, RuntimeError):
             while True:
@@ -167,12 +168,12 @@ class Site:
             return self._missing("there is no picture yet")
         return Response(shown.png, media_type="image/png", headers=_HEADERS)
 
-    async def _asked(self, name: str, *arguments: Any) -> Any:
+    async def _request(self, name: str, *arguments: Any) -> Any:
         future: Future[Any] = self.render_thread.request(name, *arguments)
         return await asyncio.wrap_future(future)
 
     async def thumbnails(self, request: Request) -> Response:
-        found = await self._asked("thumbnails")
+        found = await self._request("thumbnails")
         return JSONResponse({name: data.hex() for name, data in found}, headers=_HEADERS)
 
     async def target(self, request: Request) -> Response:
@@ -182,18 +183,18 @@ class Site:
             return self._missing(f"there is no channel '{channel}'")
         exposure = min(max(float(query.get("exposure", 0)), -30.0), 30.0)
         mask = query.get("mask") == "1"
-        data = await self._asked("target", query.get("name", ""), channel, exposure, mask)
+        data = await self._request("target", query.get("name", ""), channel, exposure, mask)
         return Response(data, media_type="image/png", headers=_HEADERS)
 
     async def pixel(self, request: Request) -> Response:
         query = request.query_params
         x, y = int(query.get("x", -1)), int(query.get("y", -1))
-        values = await self._asked("pixel", query.get("name", ""), x, y)
+        values = await self._request("pixel", query.get("name", ""), x, y)
         said = [v if abs(v) < float("inf") else str(v) for v in values]  # JSON knows no others
         return JSONResponse({"values": said}, headers=_HEADERS)
 
     async def keep(self, request: Request) -> Response:
-        """Keep the picture, or render another pipeline or other effects, as the other side."""
+        """Keep the picture, or render another pipeline or other effects, to compare with."""
         query = request.query_params
         shown = self.state.picture_request()
         label = query.get("label", "")
@@ -203,13 +204,13 @@ class Site:
                 return self._missing(f"there is no pipeline '{pipeline}'")
             effects = query.get("effects") or shown.effects
             other = PictureRequest(pipeline, shown.frame, shown.values, effects, shown.size)
-            data = await self._asked("render_other", other, _OTHER_STEPS, label)
+            data = await self._request("render_other", other, _OTHER_STEPS, label)
         else:
-            data = await self._asked("keep", label)
+            data = await self._request("keep", label)
         return Response(data, media_type="image/png", headers=_HEADERS)
 
     async def compare(self, request: Request) -> Response:
-        data, figures = await self._asked("compare")
+        data, figures = await self._request("compare")
         return JSONResponse({"figures": figures, "difference": data.hex()}, headers=_HEADERS)
 
     async def export(self, request: Request) -> Response:
@@ -217,21 +218,21 @@ class Site:
         if kind == "picture.png":
             return await self.picture(request)
         if kind == "picture.exr":
-            data = await self._asked("export_exr")
+            data = await self._request("export_exr")
             return Response(data, media_type="image/x-exr", headers=_HEADERS)
         if kind == "frames.zip":
             first = int(request.query_params.get("first", 0))
             last = int(request.query_params.get("last", 0))
             if not 0 <= first <= last < first + MOST_SEQUENCE:
                 return self._missing(f"frames {first} to {last}: at most {MOST_SEQUENCE}, from 0")
-            data = await self._asked("sequence", self.state.picture_request(), first, last)
+            data = await self._request("sequence", self.state.picture_request(), first, last)
             return Response(data, media_type="application/zip", headers=_HEADERS)
         if kind == "camera.txt":
             return PlainTextResponse(camera_element(self.state), headers=_HEADERS)
         return self._missing(f"'{kind}' cannot be exported")
 
     async def measure(self, request: Request) -> Response:
-        """Start ``nau-cost``, or say how far it is."""
+        """Start ``nau-cost``, or return its state."""
         if request.method == "POST":
             self.cost.start(self.state.pipeline)
         return JSONResponse(self.cost.state(), headers=_HEADERS)
@@ -243,8 +244,10 @@ class Site:
         return Response(page, media_type="text/html", headers=_HEADERS)
 
 
-def _said(work: Callable[[Request], Awaitable[Response]]) -> Callable[..., Awaitable[Response]]:
-    """What is wrong with a request as a text, not as a failure of the server."""
+def _answer_errors(
+    work: Callable[[Request], Awaitable[Response]],
+) -> Callable[..., Awaitable[Response]]:
+    """Answer a wrong request with a text, not with a failure of the server."""
 
     async def answer(request: Request) -> Response:
         try:
@@ -256,34 +259,34 @@ def _said(work: Callable[[Request], Awaitable[Response]]) -> Callable[..., Await
 
 
 def make_app(state: ViewerState, render_thread: RenderThread, token: str) -> Any:
-    """The application (ASGI); ``render_thread`` lives as long as it."""
+    """Make the application (ASGI); it starts and ends ``render_thread``."""
     scratch = tempfile.TemporaryDirectory(prefix="nau-view-")
-    site = Site(state, render_thread, Path(scratch.name))
+    handlers = ViewerRoutes(state, render_thread, Path(scratch.name))
 
     @contextlib.asynccontextmanager
     async def life(_: Starlette) -> AsyncIterator[None]:
-        site.windows.begin()
+        handlers.windows.begin()
         render_thread.start()
         yield
-        site.cost.stop()
+        handlers.cost.stop()
         await asyncio.to_thread(render_thread.close)
         scratch.cleanup()
 
     def route(path: str, work: Callable[[Request], Awaitable[Response]], *methods: str) -> Route:
-        return Route(f"/{token}/{path}", _said(work), methods=[*methods] or ["GET"])
+        return Route(f"/{token}/{path}", _answer_errors(work), methods=[*methods] or ["GET"])
 
     routes = [
-        route("", site.static),
-        route("static/{name}", site.static),
-        WebSocketRoute(f"/{token}/live", site.live),
-        route("picture.png", site.picture),
-        route("thumbnails", site.thumbnails),
-        route("target.png", site.target),
-        route("pixel", site.pixel),
-        route("keep", site.keep, "POST"),
-        route("compare", site.compare),
-        route("export/{kind}", site.export),
-        route("cost", site.measure, "GET", "POST"),
-        route("cost.html", site.measured),
+        route("", handlers.static),
+        route("static/{name}", handlers.static),
+        WebSocketRoute(f"/{token}/live", handlers.live),
+        route("picture.png", handlers.picture),
+        route("thumbnails", handlers.thumbnails),
+        route("target.png", handlers.target),
+        route("pixel", handlers.pixel),
+        route("keep", handlers.keep, "POST"),
+        route("compare", handlers.compare),
+        route("export/{kind}", handlers.export),
+        route("cost", handlers.measure, "GET", "POST"),
+        route("cost.html", handlers.measured),
     ]
-    return Gate(Starlette(routes=routes, lifespan=life), token)
+    return AccessCheck(Starlette(routes=routes, lifespan=life), token)

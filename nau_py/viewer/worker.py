@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.accuracy.metrics import measure
-from nau_py.accuracy.picture import enlarged, mask_of, picture
+from nau_py.accuracy.metrics import measure_errors
+from nau_py.accuracy.picture import enlarge, find_traced_pixels, to_picture
 from nau_py.api import load
 from nau_py.diagnostics.errors import NauError
 from nau_py.diagnostics.suggest import format_names
@@ -97,7 +97,7 @@ class RenderWorker:
         if coarse:
             return self._step(frame, steered.renderer, frame.image, 1, coarse=True)
         self._window = steered.renderer.plan.output == WINDOW
-        values = picture(frame, self._window)
+        values = to_picture(frame, self._window)
         self._sum = values if self._sum is None else self._sum + values
         self._steps += 1
         self._mean = self._sum / self._steps
@@ -204,7 +204,7 @@ class RenderWorker:
         for steered in self._renderers.values():
             pipeline = steered.renderer.pipeline
             if self._frame is not None and pipeline.name == self._pipeline:
-                return mask_of(self._frame, pipeline)
+                return find_traced_pixels(self._frame, pipeline)
         return None
 
     def pixel(self, name: str, x: int, y: int) -> list[float]:
@@ -229,7 +229,7 @@ class RenderWorker:
             total: NDArray[np.float64] | None = None
             for step in range(max(steps, 1)):
                 frame = steered.render(request, self.options.seed + step, self._report)
-                values = picture(frame, renderer.plan.output == WINDOW)
+                values = to_picture(frame, renderer.plan.output == WINDOW)
                 total = values if total is None else total + values
             assert total is not None
             self._other = total / max(steps, 1), label
@@ -243,9 +243,9 @@ class RenderWorker:
         if self._other is None:
             raise ValueError("there is nothing to compare with yet")
         other = self._other[0]
-        mine = enlarged(self._picture(), (other.shape[0], other.shape[1]))
+        mine = enlarge(self._picture(), (other.shape[0], other.shape[1]))
         whole = {"picture": np.ones(other.shape[:2], bool)}
-        found = measure(mine, other, whole)["picture"]
+        found = measure_errors(mine, other, whole)["picture"]
         figures = {
             "rmse": found.rmse,
             "relMSE": found.relmse,

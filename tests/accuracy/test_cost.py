@@ -15,14 +15,14 @@ import pytest
 from PIL import Image
 
 import nau_py
-from nau_py.accuracy.apply import apply
-from nau_py.accuracy.candidate import base, candidates, ladders, prepare
-from nau_py.accuracy.cost import CostRun, Wishes, cost
-from nau_py.accuracy.document import document
+from nau_py.accuracy.apply import apply_setting
+from nau_py.accuracy.candidate import make_base, make_candidates, prepare_candidate, read_ladders
+from nau_py.accuracy.cost import CostRequest, CostRun, measure_cost
+from nau_py.accuracy.document import write_document
 from nau_py.accuracy.front_chart import draw_front
 from nau_py.accuracy.page import find_worst_square, write_page
-from nau_py.accuracy.report import SettingCost, schema, to_csv, to_json
-from nau_py.accuracy.statistics import spread
+from nau_py.accuracy.report import SettingCost, make_schema, to_csv, to_json
+from nau_py.accuracy.statistics import compute_spread
 from nau_py.run.pipeline_choice import choose_pipeline
 from tests.conftest import PROJECTS, ROOT, Folder
 from tests.raytrace.studio import colour, program, square, studio
@@ -60,7 +60,7 @@ def penumbra(folder: Folder, spp: int = 4, settings: str = "") -> nau_py.Project
 
 def run(project: nau_py.Project, **asked: Any) -> CostRun:
     size = asked.pop("size", None)
-    return cost(project, nau_py.RunOptions(), Wishes(**{"runs": 3} | asked), size=size)
+    return measure_cost(project, nau_py.RunOptions(), CostRequest(**{"runs": 3} | asked), size=size)
 
 
 def by(found: CostRun, knob: str) -> dict[Any, SettingCost]:
@@ -106,7 +106,7 @@ def test_the_files(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     found = run(penumbra(folder), knobs={"spp": "1, 4"}, reference=64, effects=True)
     text = to_json(found.report)
     published = json.loads((ROOT / "docs" / "cost-1.schema.json").read_text())
-    assert published == schema(), "run scripts/reference"
+    assert published == make_schema(), "run scripts/reference"
     jsonschema.validate(json.loads(text), published)
     rows = list(csv.DictReader(io.StringIO(to_csv(found.report))))
     assert [r["spp"] for r in rows] == ["4", "1"]
@@ -128,7 +128,7 @@ def test_the_files(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     assert front is not None
     drawn = np.asarray(Image.open(io.BytesIO(front)))
     assert drawn.std() > 5
-    told = document(found.report)
+    told = write_document(found.report)
     assert "## What 4 samples buy over 1" in told
     assert "| shadow | yes |" in told
 
@@ -170,8 +170,8 @@ def test_references_are_kept_by_content(
     assert not cached()
     folder.write("lib.mlib", library)
     assert cached()
-    wishes = Wishes({"spp": "2"}, reference=16, runs=2)
-    dark = cost(folder.load(), nau_py.RunOptions(effects="none"), wishes)
+    wishes = CostRequest({"spp": "2"}, reference=16, runs=2)
+    dark = measure_cost(folder.load(), nau_py.RunOptions(effects="none"), wishes)
     assert not dark.report.reference.cached
     for file in kept.glob("*.npz"):
         file.write_bytes(b"broken")
@@ -313,11 +313,11 @@ def test_filters_of_textures(folder: Folder) -> None:
     folder.write("project.xml", re.sub(r'<rtMap to="Glow">.*?</rtMap>', "", text))
     project = folder.load()
     pipeline = choose_pipeline(project, None)
-    start = base(project, pipeline, ladders(project, pipeline, {"filter": "linear"}))
+    start = make_base(project, pipeline, read_ladders(project, pipeline, {"filter": "linear"}))
     values = {}
     for name in ("nearest", "linear"):
-        made = prepare(
-            project, pipeline, start.but("filter", name), nau_py.RunOptions(), project.size
+        made = prepare_candidate(
+            project, pipeline, start.with_value("filter", name), nau_py.RunOptions(), project.size
         )
         frame = nau_py.Renderer(made.project, options=made.options).render()
         values[name] = set(np.unique(frame.targets["L::out"][..., 0]).tolist())
@@ -330,14 +330,16 @@ def test_knobs_of_passes_and_selectors(folder: Folder) -> None:
     project = nau_py.load(PROJECTS / "penumbra" / "project.xml")
     pipeline = choose_pipeline(project, None)
     name = next(p.name for p in pipeline.passes if p.pass_class == "mask")
-    turned = ladders(
+    turned = read_ladders(
         project, pipeline, {"trace/LIGHT_SAMPLES": "1, 8", f"{name}/shadowBorder/radius": "1, 3"}
     )
-    start = base(project, pipeline, turned)
-    every = candidates(start, turned, combine=True)
+    start = make_base(project, pipeline, turned)
+    every = make_candidates(start, turned, combine=True)
     assert len(every) >= 4
-    wanted = start.but("trace/LIGHT_SAMPLES", 8).but(f"{name}/shadowBorder/radius", 3.0)
-    made = prepare(project, pipeline, wanted, nau_py.RunOptions(), project.size)
+    wanted = start.with_value("trace/LIGHT_SAMPLES", 8).with_value(
+        f"{name}/shadowBorder/radius", 3.0
+    )
+    made = prepare_candidate(project, pipeline, wanted, nau_py.RunOptions(), project.size)
     mine, other = (
         {p.name: p for p in choose_pipeline(x, None).passes} for x in (project, made.project)
     )
@@ -349,10 +351,10 @@ def test_knobs_of_passes_and_selectors(folder: Folder) -> None:
 def test_without_rays(folder: Folder) -> None:
     """A project that only rasterises has a scale to turn, and no noise."""
     project = nau_py.load(PROJECTS / "selective" / "project.xml")
-    found = cost(
+    found = measure_cost(
         project,
         nau_py.RunOptions(),
-        Wishes({"scale": "0.5"}, runs=2),
+        CostRequest({"scale": "0.5"}, runs=2),
         pipeline="Raster",
         size=(64, 64),
     )
@@ -370,21 +372,23 @@ def test_apply_changes_what_it_must(folder: Folder) -> None:
     file.write_text(text)
     project = folder.load()
     pipeline = choose_pipeline(project, None)
-    turned = ladders(project, pipeline, {"spp": "8", "light-samples": "4"})
-    start = base(project, pipeline, turned)
-    said = apply(project, pipeline, start.but("spp", 23), start)
+    turned = read_ladders(project, pipeline, {"spp": "8", "light-samples": "4"})
+    start = make_base(project, pipeline, turned)
+    said = apply_setting(project, pipeline, start.with_value("spp", 23), start)
     assert said == ["spp 4 -> 23"]
     after = file.read_text()
     assert after == text.replace('<RAYS_PER_PIXEL value="4" />', '<RAYS_PER_PIXEL value="23" />')
     project = folder.load()
-    apply(project, choose_pipeline(project, None), start.but("light-samples", 4), start)
+    apply_setting(
+        project, choose_pipeline(project, None), start.with_value("light-samples", 4), start
+    )
     pass_ = choose_pipeline(folder.load(), None).passes[0]
     assert (pass_.get("RAYS_PER_PIXEL"), pass_.get("LIGHT_SAMPLES")) == ((23,), (4,))
     assert nau_py.lint(folder.load()) == []
-    turned = ladders(project, pipeline, {"format": "half"})
-    start = base(project, pipeline, turned)
+    turned = read_ladders(project, pipeline, {"format": "half"})
+    start = make_base(project, pipeline, turned)
     with pytest.raises(nau_py.ProjectError, match="no project file says it"):
-        apply(project, pipeline, start.but("format", "half"), start)
+        apply_setting(project, pipeline, start.with_value("format", "half"), start)
 
 
 def test_apply_in_yaml(folder: Folder) -> None:
@@ -393,9 +397,11 @@ def test_apply_in_yaml(folder: Folder) -> None:
     folder.write("project.yaml", text)
     project = folder.load("project.yaml")
     pipeline = choose_pipeline(project, None)
-    turned = ladders(project, pipeline, {"spp": "8", "light-samples": "4"})
-    start = base(project, pipeline, turned)
-    apply(project, pipeline, start.but("spp", 23).but("light-samples", 4), start)
+    turned = read_ladders(project, pipeline, {"spp": "8", "light-samples": "4"})
+    start = make_base(project, pipeline, turned)
+    apply_setting(
+        project, pipeline, start.with_value("spp", 23).with_value("light-samples", 4), start
+    )
     before, after = text.splitlines(), (folder.path / "project.yaml").read_text().splitlines()
     assert [line.strip("- ") for line in after if line not in before] == [
         "LIGHT_SAMPLES: 4",
@@ -432,7 +438,7 @@ def test_the_project_says_what_to_measure(folder: Folder) -> None:
     file.write_text(file.read_text().replace("</project>", said))
     project = folder.load()
     assert nau_py.lint(project) == []
-    found = cost(project, nau_py.RunOptions(), Wishes())
+    found = measure_cost(project, nau_py.RunOptions(), CostRequest())
     assert found.report.runs == 2
     assert found.report.reference.spp == 32
     assert [s.values for s in found.report.settings] == [{"spp": 4}, {"spp": 1}, {"spp": 2}]
@@ -457,5 +463,5 @@ def test_renderer_again_changes_random_numbers_only(folder: Folder) -> None:
     np.testing.assert_array_equal(same.targets["L::out"], first)
     assert (other.targets["L::out"] != first).any()
     assert abs(float(other.targets["L::out"].mean() - first.mean())) < 0.01
-    assert spread([1.0]).median == 1.0
+    assert compute_spread([1.0]).median == 1.0
     assert Path(folder.path).is_dir()

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.accuracy.judge import Judge
-from nau_py.accuracy.statistics import t95
+from nau_py.accuracy.ranking import Ranking
+from nau_py.accuracy.statistics import find_t95
 from tests.conftest import Folder
 from tests.raytrace.studio import colour, program, square, studio
 
@@ -74,7 +74,7 @@ def test_the_interval_covers_the_truth(folder: Folder, scene: object, sampler: s
         frame = render(project, seed, SAMPLES)
         assert frame.error is not None
         difference = np.sqrt(((frame.targets["L::out"][..., :3] - truth) ** 2).mean(axis=-1))
-        held.append(difference <= t95(BATCHES - 1) * frame.error + 1e-6)
+        held.append(difference <= find_t95(BATCHES - 1) * frame.error + 1e-6)
         noisy.append(frame.error > 1e-5)
     where = np.array(noisy).mean(axis=0) > 0.5
     assert where.sum() > 200
@@ -84,7 +84,7 @@ def test_the_interval_covers_the_truth(folder: Folder, scene: object, sampler: s
 
 def test_the_estimate_errs_on_the_safe_side(folder: Folder) -> None:
     """Root mean square over the picture: low-discrepancy points are better than their batches tell,
-    by up to three times here, and never worse than told."""
+    by up to three times here, and never worse than report_part."""
     project = shadow(folder, "")
     truth = render(project, 1000, 8192).targets["L::out"][..., :3].astype(np.float64)
     frame = render(project, 1, SAMPLES)
@@ -96,6 +96,6 @@ def test_the_estimate_errs_on_the_safe_side(folder: Folder) -> None:
 def test_seeds_that_change_nothing_are_told() -> None:
     """Where two renders with other seeds agree to the bit, no interval says anything."""
     for own, count in ((0.0, 1), (1e-4, 0)):
-        judge = Judge("rmse", "picture", SimpleNamespace(own_mse=lambda region, v=own: v), [])
-        said = [note for note in judge.notes() if "seeds change nothing" in note]
+        ranking = Ranking("rmse", "picture", SimpleNamespace(own_mse=lambda region, v=own: v), [])
+        said = [note for note in ranking.list_notes() if "seeds change nothing" in note]
         assert len(said) == count

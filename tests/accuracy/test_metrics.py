@@ -19,7 +19,7 @@ def wave(height: int = 48, width: int = 64) -> np.ndarray:
 
 
 def errors(image: np.ndarray, reference: np.ndarray, where: np.ndarray) -> Errors:
-    return metrics.measure(image, reference, {"there": where})["there"]
+    return metrics.measure_errors(image, reference, {"there": where})["there"]
 
 
 EVERYWHERE = np.ones((48, 64), bool)
@@ -75,7 +75,7 @@ def test_only_chosen_and_finite_pixels_count() -> None:
 def test_relmse_bounds_dark_pixels() -> None:
     """Black in the reference divides by 0.01, not by nothing."""
     reference, image = np.zeros((2, 2, 3)), np.full((2, 2, 3), 0.01)
-    assert metrics.relmse(image, reference, np.ones((2, 2), bool)) == pytest.approx(1.0)
+    assert metrics.compute_relmse(image, reference, np.ones((2, 2), bool)) == pytest.approx(1.0)
 
 
 def test_flip_orders_pictures() -> None:
@@ -93,4 +93,4 @@ def test_flip_orders_pictures() -> None:
 
 
 def test_psnr_of_a_known_error() -> None:
-    assert metrics.psnr(0.001) == pytest.approx(-10 * log10(0.001))
+    assert metrics.compute_psnr(0.001) == pytest.approx(-10 * log10(0.001))

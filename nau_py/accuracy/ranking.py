@@ -1,4 +1,4 @@
-"""What the measurements of a sweep say: which settings are worth their time."""
+"""Ranking of the settings of a sweep: front, knee, answers, comparisons."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import isfinite, sqrt
 
 from nau_py.accuracy.candidate import Candidate
-from nau_py.accuracy.front import Point, at_error, at_time, front, knee
+from nau_py.accuracy.front import Point, find_fastest, find_front, find_knee, find_most_accurate
 from nau_py.accuracy.measure import Measured, Reference
 from nau_py.accuracy.report import (
     Answer,
@@ -17,33 +17,33 @@ from nau_py.accuracy.report import (
     TimeSpread,
     Verified,
 )
-from nau_py.accuracy.statistics import Interval, exponent, interval, spread
+from nau_py.accuracy.statistics import Interval, compute_interval, compute_spread, fit_exponent
 
 MEASURES = ("mse", "rmse", "relmse", "psnr", "ssim", "flip")
 EQUAL = 1.001
 """Errors in this ratio count as equal."""
 RANKED = ("rmse", "mse", "relmse")
-"""Measures that settings are ranked by: those that are to be small."""
+"""Measures that settings can be ranked by: smaller is better."""
 
 
-def error_of(m: Measured, region: str, measure: str) -> Interval:
-    """An error of a candidate over its runs."""
-    return interval([getattr(e, measure) for e in m.errors[region]])
+def estimate_error(m: Measured, region: str, measure: str) -> Interval:
+    """Return the mean of an error of a candidate over its runs, with its interval."""
+    return compute_interval([getattr(e, measure) for e in m.errors[region]])
 
 
-def estimate(found: Interval) -> Estimate:
+def to_estimate(found: Interval) -> Estimate:
     def number(value: float) -> float | None:
         return value if isfinite(value) else None
 
     return Estimate(mean=number(found.mean), interval=(number(found.low), number(found.high)))
 
 
-def root(value: float) -> float | None:
+def safe_root(value: float) -> float | None:
     return sqrt(value) if isfinite(value) and value >= 0 else None
 
 
 @dataclass(frozen=True, slots=True)
-class Judge:
+class Ranking:
     """Ranks ``measured`` by time and by ``measure`` over ``region``."""
 
     measure: str
@@ -51,56 +51,61 @@ class Judge:
     truth: Reference
     measured: list[Measured]
 
-    def better(self, m: Measured) -> bool:
-        """Whether it is nearer to the truth than the reference is: the difference of both is then
-        less than twice the reference's own error, and says little of the candidate's."""
-        own = self.truth.own_mse(self.region)
-        return own > 0 and error_of(m, self.region, "mse").mean < 2 * own
+    def beats_reference(self, m: Measured) -> bool:
+        """Return True if a candidate is more accurate than the reference.
 
-    def point(self, m: Measured) -> Point:
-        """Median time in milliseconds, mean error."""
-        return spread(m.ms).median, error_of(m, self.region, self.measure).mean
+        Their difference is then less than twice the reference's own error, and tells little about
+        the error of the candidate.
+        """
+        own = self.truth.own_mse(self.region)
+        return own > 0 and estimate_error(m, self.region, "mse").mean < 2 * own
+
+    def locate(self, m: Measured) -> Point:
+        """Return the median time in milliseconds and the mean error."""
+        return compute_spread(m.ms).median, estimate_error(m, self.region, self.measure).mean
 
     @property
     def ranked(self) -> list[Measured]:
-        return [m for m in self.measured if not self.better(m) and isfinite(self.point(m)[1])]
+        return [
+            m for m in self.measured if not self.beats_reference(m) and isfinite(self.locate(m)[1])
+        ]
 
     @property
     def front(self) -> list[Measured]:
-        """The settings that no other one beats in time and error, by growing time."""
+        """Settings that no other one beats in time and error, by growing time."""
         usable = self.ranked
-        return [usable[i] for i in front([self.point(m) for m in usable])]
+        return [usable[i] for i in find_front([self.locate(m) for m in usable])]
 
     @property
     def knee(self) -> Measured | None:
         line = self.front
-        found = knee([self.point(m) for m in line])
+        found = find_knee([self.locate(m) for m in line])
         return line[found] if found is not None else None
 
-    def only(self, knob: str) -> list[Measured]:
-        """The measurements that differ from the first in one knob at most, by its value."""
+    def select_ladder(self, knob: str) -> list[Measured]:
+        """Return the measurements that differ from the first in ``knob`` only, by its value."""
         own = self.measured[0].candidate
         value = own[knob]
         if value is None:
             return []
-        found = [m for m in self.measured if m.candidate.but(knob, value) == own]
+        found = [m for m in self.measured if m.candidate.with_value(knob, value) == own]
         return sorted(found, key=lambda m: float(m.candidate[knob] or 0))
 
     @property
     def halving(self) -> float | None:
-        """The factor of time by which half the error costs: from error ~ time^p over the samples a
-        pixel, of their time beyond what a frame costs anyway (raster and the rest)."""
-        line = [m for m in self.only("spp") if not self.better(m)]
+        """Factor of the tracing time that halves the error, from error ~ time^p over the samples a
+        pixel; raster and other stages do not count."""
+        line = [m for m in self.select_ladder("spp") if not self.beats_reference(m)]
         if len(line) < 2:
             return None
-        costs = [sum(spread(m.stages[s]).median for s in ("trace", "shade")) for m in line]
-        errors = [self.point(m)[1] for m in line]
-        power = exponent(costs, errors)
+        costs = [sum(compute_spread(m.stages[s]).median for s in ("trace", "shade")) for m in line]
+        errors = [self.locate(m)[1] for m in line]
+        power = fit_exponent(costs, errors)
         return 2 ** (-1 / power) if power is not None and power < 0 else None
 
-    def setting(self, m: Measured, base: bool) -> SettingCost:
-        """A row of the report."""
-        times = spread(m.ms)
+    def describe_setting(self, m: Measured, base: bool) -> SettingCost:
+        """Make the row of the report for a setting."""
+        times = compute_spread(m.ms)
         return SettingCost(
             label=m.candidate.label,
             values=dict(m.candidate.values),
@@ -108,7 +113,7 @@ class Judge:
             time=TimeSpread(median=times.median, range=(times.low, times.high)),
             set_up_ms=m.set_up_ms,
             build_ms=m.build_ms,
-            stages={name: spread(values).median for name, values in m.stages.items()},
+            stages={name: compute_spread(values).median for name, values in m.stages.items()},
             passes=m.passes,
             rays=m.rays,
             pixels=m.pixels,
@@ -116,13 +121,13 @@ class Judge:
             nonfinite=m.nonfinite,
             errors={region: self._errors(m, region) for region in self.truth.regions},
             on_front=any(m is other for other in self.front),
-            better_than_reference=self.better(m),
+            better_than_reference=self.beats_reference(m),
         )
 
     def _errors(self, m: Measured, region: str) -> RegionErrors:
         bias2, variance = m.split[region]
         found = {
-            name: estimate(error_of(m, region, name))
+            name: to_estimate(estimate_error(m, region, name))
             for name in MEASURES
             if getattr(m.errors[region][0], name) is not None
         }
@@ -135,13 +140,13 @@ class Judge:
     def _error_promise(self, most: float) -> str:
         return f"{self.measure} of the {self.region} at most {most:g}"
 
-    def for_error(self, most: float) -> tuple[Answer, Measured | None]:
-        """The cheapest setting whose error is at most ``most``, its interval included."""
+    def find_for_error(self, most: float) -> tuple[Answer, Measured | None]:
+        """Find the fastest setting whose error is at most ``most``, interval included."""
         points = [
-            (spread(m.ms).median, error_of(m, self.region, self.measure).high)
+            (compute_spread(m.ms).median, estimate_error(m, self.region, self.measure).high)
             for m in self.measured
         ]
-        found = at_error(points, most)
+        found = find_fastest(points, most)
         question = self._error_promise(most)
         if found is None:
             least = min(p[1] for p in points)
@@ -149,13 +154,13 @@ class Judge:
             return Answer(question=question, setting=None, text=text), None
         return self._answer(question, self.measured[found])
 
-    def for_time(self, seconds: float) -> tuple[Answer, Measured | None]:
-        """The most accurate setting that takes at most ``seconds``, its interval included."""
+    def find_for_time(self, seconds: float) -> tuple[Answer, Measured | None]:
+        """Find the most accurate setting that takes at most ``seconds``, interval included."""
         points = [
-            (interval(m.ms).high, error_of(m, self.region, self.measure).mean)
+            (compute_interval(m.ms).high, estimate_error(m, self.region, self.measure).mean)
             for m in self.measured
         ]
-        found = at_time(points, seconds * 1000)
+        found = find_most_accurate(points, seconds * 1000)
         question = _time_promise(seconds)
         if found is None:
             least = min(p[0] for p in points)
@@ -164,19 +169,19 @@ class Judge:
         return self._answer(question, self.measured[found])
 
     def _answer(self, question: str, m: Measured) -> tuple[Answer, Measured]:
-        time, value = self.point(m)
+        time, value = self.locate(m)
         text = f"{m.candidate.label}: {time:.0f} ms, {self.measure} {value:.3g}"
         return Answer(question=question, setting=m.candidate.label, text=text), m
 
-    def comparisons(self) -> list[Comparison]:
-        """For each setting the most accurate other one that takes no longer, and the fastest other
-        one that is no worse."""
-        points = [self.point(m) for m in self.measured]
+    def make_comparisons(self) -> list[Comparison]:
+        """Compare each setting with the most accurate other one that takes no longer, and with
+        the fastest other one that is as accurate."""
+        points = [self.locate(m) for m in self.measured]
         found = []
         for k, (time, value) in enumerate(points):
             others = [i for i in range(len(points)) if i != k]
             rest = [points[i] for i in others]
-            better, faster = at_time(rest, time), at_error(rest, value * EQUAL)
+            better, faster = find_most_accurate(rest, time), find_fastest(rest, value * EQUAL)
             if better is not None and rest[better][1] >= value:
                 better = None
             if faster is not None and rest[faster][0] >= time:
@@ -194,15 +199,15 @@ class Judge:
         return found
 
     def verify_error(self, m: Measured, most: float) -> Verified:
-        found = error_of(m, self.region, self.measure)
+        found = estimate_error(m, self.region, self.measure)
         return _verified(self._error_promise(most), m.candidate, found, most)
 
     def verify_time(self, m: Measured, seconds: float) -> Verified:
-        found = interval([ms / 1000 for ms in m.ms])
+        found = compute_interval([ms / 1000 for ms in m.ms])
         return _verified(_time_promise(seconds), m.candidate, found, seconds)
 
-    def notes(self) -> list[str]:
-        """What a reader must know to take the numbers right."""
+    def list_notes(self) -> list[str]:
+        """List the notes that a reader of the numbers needs."""
         found = []
         if self.truth.own_mse(self.region) == 0:
             found.append(
@@ -212,7 +217,7 @@ class Judge:
         for m in self.measured:
             if m.nonfinite:
                 found.append(f"{m.candidate.label}: {m.nonfinite} pixels were not finite")
-            if self.better(m):
+            if self.beats_reference(m):
                 found.append(
                     f"{m.candidate.label}: more accurate than the reference; not ranked. "
                     "A larger --reference would tell"
@@ -228,6 +233,6 @@ def _verified(promise: str, candidate: Candidate, found: Interval, most: float) 
     return Verified(
         promise=promise,
         setting=candidate.label,
-        found=estimate(found),
+        found=to_estimate(found),
         kept=found.low <= most,
     )

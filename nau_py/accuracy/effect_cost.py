@@ -1,4 +1,4 @@
-"""What each effect is worth: the project with it and without it, in time and in difference."""
+"""Cost of each effect: time and difference of the project with and without it."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ import numpy as np
 from nau_py.accuracy.candidate import Candidate
 from nau_py.accuracy.measure import Bench
 from nau_py.accuracy.metrics import F64
-from nau_py.accuracy.picture import picture
+from nau_py.accuracy.picture import to_picture
 from nau_py.accuracy.report import EffectCost
-from nau_py.accuracy.statistics import spread
+from nau_py.accuracy.statistics import compute_spread
 from nau_py.graph.resource import WINDOW
 from nau_py.model.effects import EFFECTS
 
 
-def worth(
+def measure_effects(
     bench: Bench,
     candidate: Candidate,
     runs: int,
     told: Callable[[str, float], None],
 ) -> list[EffectCost]:
-    """Render with everything that is called for, then without each effect of those, with the same
-    seeds; an effect that nothing calls for is left out of nothing and costs nothing."""
+    """Render with every effect that the scene calls for, then without each of them, with the same
+    seeds. Other effects cost nothing."""
     image, ms, rays, called = _render(bench, candidate, None, runs)
     found = []
     for done, effect in enumerate(EFFECTS):
@@ -57,11 +57,11 @@ def worth(
 def _render(
     bench: Bench, candidate: Candidate, effects: str | None, runs: int
 ) -> tuple[F64, float, int, set[str]]:
-    """(last picture, median ms, rays, effects that are called for) with these effects; None: as
-    the project and the run have it."""
+    """Render with ``effects``, or the project's own for None; return the last picture, the median
+    milliseconds, the rays, and the effects that the scene calls for."""
     options = bench.options if effects is None else replace(bench.options, effects=effects)
     other = Bench(bench.project, bench.pipeline, options, bench.size, bench.frame)
-    renderer = other.renderer(candidate)
+    renderer = other.make_renderer(candidate)
     try:
         renderer.render(bench.frame)
         times = []
@@ -77,4 +77,4 @@ def _render(
         if e["called_for"] and e["status"] == "simulated"
     }
     rays = sum(frame.report["totals"]["rays"].values())
-    return picture(frame, shown), spread(times).median, rays, called
+    return to_picture(frame, shown), compute_spread(times).median, rays, called
