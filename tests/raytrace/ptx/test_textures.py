@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nau_py.raytrace.kernels.geometry.cuda_texture import Image, sampler
+from nau_py.raytrace.kernels.geometry.cuda_texture import Image, sampler_address
 
 Array = np.ndarray[Any, Any]
 
@@ -16,7 +16,7 @@ Array = np.ndarray[Any, Any]
 def fetch(image: Image, dimensions: int, points: Array) -> Array:
     """RGBA float32 (n, 4) at points (n, 3)."""
     kinds = [ctypes.c_uint64, ctypes.c_int32, *[ctypes.c_float] * 3, ctypes.c_uint64]
-    ask = ctypes.CFUNCTYPE(None, *kinds)(sampler().address)
+    ask = ctypes.CFUNCTYPE(None, *kinds)(sampler_address())
     out = np.zeros((len(points), 4), np.float32)
     for row, (x, y, z) in zip(out, points.tolist()):
         ask(image.handle, dimensions, x, y, z, row.ctypes.data)

@@ -1,109 +1,104 @@
-"""The decorators of kernels, and the type of a vector inside them."""
+"""Decorators of kernels. They only note the function: numba is imported at the first compilation.
+
+A module of kernels therefore loads as fast as any other, and its functions are plain Python until
+the engine calls one. Inside compiled code, numba takes the type of a deferred function from its
+``_numba_type_`` and so compiles what a kernel calls together with the kernel.
+"""
 
 from __future__ import annotations
 
-import hashlib
-import os
+import functools
+import importlib
 import platform
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from pathlib import Path
+import threading
+from collections.abc import Callable
 from typing import Any, TypeVar, cast
-
-import numba
-from llvmlite import ir
-from numba import cfunc, njit, types
-from numba.extending import intrinsic
-
-from nau_py.process.cache_folder import make_cache_folder
 
 F = TypeVar("F", bound=Callable[..., object])
 V3 = tuple[float, float, float]
+_COMPILER = "nau_py.raytrace.kernels.core.compiler"
+"""Module that uses numba; imported by name, at the first compilation."""
+_LOCK = threading.RLock()
 
 
-def _cache_folder() -> str:
-    """Where machine code is kept: a folder of its own for every version of the kernels.
+class Deferred:
+    """A function that is compiled at its first use. Subclasses tell the compiler's function that
+    makes it, and its arguments."""
 
-    numba notices changes of a kernel's own file only, not of the functions that it calls.
-    """
-    digest = hashlib.sha256()
-    for file in sorted(Path(__file__).parents[1].rglob("*.py")):
-        digest.update(file.read_bytes())
-    folder = make_cache_folder(f"kernels-{digest.hexdigest()[:16]}")
-    return "" if folder is None else str(folder)
+    def __init__(self, maker: str, *arguments: Any) -> None:
+        self._maker, self._arguments = maker, arguments
+        self._compiled: Any = None
+
+    @property
+    def compiled(self) -> Any:
+        """Numba's object: a dispatcher, an intrinsic or an external function."""
+        if self._compiled is None:
+            with _LOCK:  # two threads must not make two dispatchers
+                if self._compiled is None:
+                    make = getattr(importlib.import_module(_COMPILER), self._maker)
+                    self._compiled = make(*self._arguments)
+        return self._compiled
+
+    @property
+    def _numba_type_(self) -> Any:
+        compiler = importlib.import_module(_COMPILER)
+        return compiler.type_of(self.compiled)
+
+    def __call__(self, *arguments: Any) -> Any:
+        raise TypeError(f"{self._maker}{self._arguments} works in compiled code only")
 
 
-_FOLDER = os.environ.get("NUMBA_CACHE_DIR") or _cache_folder()
-"""Empty where nothing can be kept: kernels are then compiled in every process."""
+class Inner(Deferred):
+    """A function that kernels call. Called from Python, it is the plain function."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__("compile_inner", function)
+        self.py_func = function
+        functools.update_wrapper(self, function)
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self.py_func(*arguments)
 
 
-def cache_folder() -> str:
-    """Where machine code is kept; empty for nowhere."""
-    return _FOLDER
+class Kernel(Deferred):
+    """A function that Python calls and that runs compiled."""
 
+    def __init__(self, function: Callable[..., Any]) -> None:
+        super().__init__("compile_kernel", function)
+        self.py_func = function
+        functools.update_wrapper(self, function)
 
-@contextmanager
-def _cached() -> Iterator[bool]:
-    """Where machine code is kept; whether there is such a place."""
-    before, numba.config.CACHE_DIR = numba.config.CACHE_DIR, _FOLDER
-    try:
-        yield bool(_FOLDER)
-    finally:
-        numba.config.CACHE_DIR = before
+    def __call__(self, *arguments: Any) -> Any:
+        return self.compiled(*arguments)
 
 
 def kernel(function: F) -> F:
     """Compile ``function``, which Python calls, at its first call: no GIL, IEEE arithmetic."""
-    with _cached() as cache:
-        made = njit(nogil=True, cache=cache, error_model="numpy", fastmath=False)(function)
-    return cast(F, made)
-
-
-def callback(function: Callable[[Any], None]) -> int:
-    """Compile ``function`` of one address, which a C library calls; returns where it stands."""
-    with _cached() as cache:
-        made = cfunc(types.void(types.uint64), cache=cache, error_model="numpy")(function)
-    _CALLBACKS.append(made)
-    return int(made.address)
-
-
-_CALLBACKS: list[Any] = []
-"""Compiled callbacks: their code lives as long as they do."""
+    return cast(F, Kernel(function))
 
 
 def inner(function: F) -> F:
-    """Compile ``function``, which only kernels call: without the wrappers that Python needs."""
-    compiled = njit(
-        nogil=True,
-        error_model="numpy",
-        fastmath=False,
-        no_cpython_wrapper=True,
-        no_cfunc_wrapper=True,
-    )(function)
-    return cast(F, compiled)
+    """Compile ``function``, which only kernels call, with the first kernel that calls it."""
+    return cast(F, Inner(function))
+
+
+def callback(function: Callable[..., None], signature: str = "void(uint64)") -> int:
+    """Compile ``function``, which a C library calls; return the address of its code."""
+    return int(importlib.import_module(_COMPILER).compile_callback(function, signature))
+
+
+def external(name: str, arguments: int) -> Callable[..., Any]:
+    """A C function of so many addresses without a result, found by its symbol."""
+    return cast(Callable[..., Any], Deferred("find_external", name, arguments))
 
 
 COUNTS_CYCLES = platform.machine().lower() in ("x86_64", "amd64")
 """Whether the processor's counter can be read here: elsewhere the instruction may be forbidden."""
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def read_cycles(typing: Any) -> Any:
-    """The processor's cycle counter, int64; 0 where it cannot be read."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        word = ir.IntType(64)
-        if not COUNTS_CYCLES:
-            return ir.Constant(word, 0)
-        counter = ir.FunctionType(word, [])
-        return builder.call(
-            builder.module.declare_intrinsic("llvm.readcyclecounter", (), counter), []
-        )
-
-    return types.int64(), generate
+read_cycles = cast(Callable[[], int], Deferred("make_cycle_counter"))
+"""The processor's cycle counter, int64; 0 where it cannot be read."""
 
 
 @kernel
 def count_cycles() -> int:
-    """:func:`cycles` for Python."""
+    """Return ``read_cycles`` to Python."""
     return read_cycles()

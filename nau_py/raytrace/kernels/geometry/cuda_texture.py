@@ -10,12 +10,10 @@ from functools import lru_cache
 from math import floor
 from typing import Any
 
-import numba
 import numpy as np
-from numba import types
 from numpy.typing import NDArray
 
-from nau_py.raytrace.kernels.core.jit import inner
+from nau_py.raytrace.kernels.core.jit import callback, inner
 from nau_py.raytrace.kernels.core.memory import f32, i8, i32, i64, put_f32
 
 TEXTURE = np.dtype(
@@ -158,8 +156,9 @@ def _sample(handle: Any, dimensions: int, x: float, y: float, z: float, out: Any
 
 
 @lru_cache(maxsize=1)
-def sampler() -> Any:
-    """The compiled sampler; ``address`` is where it stands."""
-    at = (types.float32, types.float32, types.float32)
-    signature = types.void(types.uint64, types.int32, *at, types.uint64)
-    return numba.cfunc(signature, error_model="numpy")(_sample)
+def sampler_address() -> int:
+    """Compile the sampler; return the address of its code.
+
+    Its C type is ``void(uint64 handle, int32 dimensions, float x, float y, float z, uint64 out)``.
+    """
+    return callback(_sample, "void(uint64, int32, float32, float32, float32, uint64)")

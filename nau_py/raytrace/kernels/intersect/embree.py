@@ -9,18 +9,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import types
 
-from nau_py.raytrace.kernels.core.jit import V3, inner
+from nau_py.raytrace.kernels.core.jit import V3, external, inner
 from nau_py.raytrace.kernels.core.memory import f32, i8, i32, put_f32, put_i32, put_i64
 from nau_py.raytrace.kernels.core.tables import LANES, NOTHING, QUERY
 
-_SINGLE = types.void(types.uintp, types.uintp, types.uintp)
-_PACKET = types.void(types.uintp, types.uintp, types.uintp, types.uintp)
-rtcIntersect1 = types.ExternalFunction("rtcIntersect1", _SINGLE)
-rtcOccluded1 = types.ExternalFunction("rtcOccluded1", _SINGLE)
-rtcIntersect16 = types.ExternalFunction("rtcIntersect16", _PACKET)
-rtcOccluded16 = types.ExternalFunction("rtcOccluded16", _PACKET)
+rtcIntersect1, rtcOccluded1 = external("rtcIntersect1", 3), external("rtcOccluded1", 3)
+rtcIntersect16, rtcOccluded16 = external("rtcIntersect16", 4), external("rtcOccluded16", 4)
 INVALID = -1
 """RTC_INVALID_GEOMETRY_ID, as an int32."""
 RAY_FLOATS = 32

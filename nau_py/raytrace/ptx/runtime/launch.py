@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.raytrace.kernels.geometry.cuda_texture import sampler
+from nau_py.raytrace.kernels.geometry.cuda_texture import sampler_address
 from nau_py.raytrace.ptx.runtime.frame import (
     FRAME_BYTES,
     LAUNCH,
@@ -152,7 +152,7 @@ def bind_host(natives: list[Native], printed: Printed) -> Any:
     callback = CALLBACK(tell)
     place = ctypes.cast(callback, ctypes.c_void_p).value or 0
     for native in natives:
-        native.set_variable("nau.sampler", int(sampler().address).to_bytes(8, "little"))
+        native.set_variable("nau.sampler", sampler_address().to_bytes(8, "little"))
         native.set_variable("nau.printer", place.to_bytes(8, "little"))
     return callback
 

@@ -14,7 +14,7 @@ from typing import Any
 import llvmlite.binding as llvm
 
 from nau_py.process.files import write_bytes
-from nau_py.raytrace.kernels.core.jit import cache_folder
+from nau_py.raytrace.kernels.core.machine_code import cache_folder
 from nau_py.raytrace.ptx.runtime.frame import fill_in
 from nau_py.raytrace.tracing.accelerator import load_embree
 
