@@ -16,8 +16,8 @@ from nau_py.passes.ptx.variables import mentioned, value_bytes
 from nau_py.process.paths import resolve as resolve_path
 from nau_py.raytrace.programs.description import MISS
 from nau_py.raytrace.programs.used import used_programs
-from nau_py.raytrace.ptx.compiler.reader import Module, PtxError
-from nau_py.raytrace.ptx.compiler.uses import Uses, uses_of
+from nau_py.raytrace.ptx.compiler.reader import PtxModule, PtxError
+from nau_py.raytrace.ptx.compiler.analysis import ProgramUses, analyse_program
 from nau_py.raytrace.ptx.optix.optix6 import declared, is_old
 
 HIT_RECORD, OTHER_RECORD = 112, 16
@@ -41,7 +41,7 @@ def contract_faults(
             "samples",
         )
     used = list(_used(project.folder, pass_, modules))
-    if any(isinstance(m, Module) and is_old(m) for m in modules.values()):
+    if any(isinstance(m, PtxModule) and is_old(m) for m in modules.values()):
         yield from _old_payloads(pass_, used)
         for kind in GEOMETRY_KINDS:
             if not any(program.type == kind for program in pass_.rtGeometryProgram):
@@ -58,7 +58,7 @@ def contract_faults(
     yield from _parameters(project, pass_)
 
 
-Used = tuple[Program, Module, Uses]
+Used = tuple[Program, PtxModule, ProgramUses]
 
 
 def _used(folder: Path, pass_: RaytracePass, modules: Modules) -> Iterator[Used]:
@@ -66,12 +66,12 @@ def _used(folder: Path, pass_: RaytracePass, modules: Modules) -> Iterator[Used]
     for program, *_ in used_programs(pass_):
         path = resolve_path(folder, program.file or "").best
         module, name = modules.get(path), program.proc or ""
-        if not isinstance(module, Module) or (path, name) in seen:
+        if not isinstance(module, PtxModule) or (path, name) in seen:
             continue
         seen.add((path, name))
         function = find_function(module, name)
         if function is not None:
-            yield program, module, uses_of(module, function)
+            yield program, module, analyse_program(module, function)
 
 
 def _label(pass_: RaytracePass, program: Program) -> str:

@@ -22,7 +22,7 @@ from nau_py.raytrace.ptx.runtime.guarded import open_marks
 
 if TYPE_CHECKING:
     from nau_py.raster.targets import Target
-    from nau_py.raytrace.ptx.runtime.launch import Launch
+    from nau_py.raytrace.ptx.runtime.launch import PtxLaunch
     from nau_py.scene.material import RenderMaterial
 
 Values = dict[str, "bytes | NDArray[Any] | int"]
@@ -115,7 +115,7 @@ class OptixState:
 
     def _write(self, record: NDArray[np.uint8], values: Values) -> None:
         """Put the variables of ``values`` that programs have into a record."""
-        from nau_py.raytrace.ptx.runtime.frame import RECORD_HEADER
+        from nau_py.raytrace.ptx.runtime.layout import RECORD_HEADER
 
         layout = self.programs.layout
         for name, value in values.items():
@@ -133,9 +133,9 @@ class OptixState:
             at = RECORD_HEADER + layout.offsets[name]
             record[at : at + len(data)] = np.frombuffer(data, np.uint8)
 
-    def begin(self, pass_: RaytracePass, frame: FrameContext, view: View) -> Launch:
+    def begin(self, pass_: RaytracePass, frame: FrameContext, view: View) -> PtxLaunch:
         """The launch of a frame; the variables of the programs are written."""
-        from nau_py.raytrace.ptx.runtime.frame import RECORD_HEADER
+        from nau_py.raytrace.ptx.runtime.layout import RECORD_HEADER
 
         context, target = camera_context(pass_, frame, view), view.target
         self.resources.begin_frame()
@@ -156,10 +156,10 @@ class OptixState:
         context.material = None
         return self._launch((target.width, target.height))
 
-    def _launch(self, size: tuple[int, int]) -> Launch:
-        from nau_py.raytrace.ptx.runtime.launch import Launch
+    def _launch(self, size: tuple[int, int]) -> PtxLaunch:
+        from nau_py.raytrace.ptx.runtime.launch import PtxLaunch
 
-        return Launch(
+        return PtxLaunch(
             self.generate,
             self.handle,
             self.hits,

@@ -12,20 +12,20 @@ from nau_py.model.raytrace import Program, RaytracePass
 from nau_py.process.paths import resolve as resolve_path
 from nau_py.raytrace.programs.source import COMPILED, plain_name
 from nau_py.raytrace.programs.used import used_programs
-from nau_py.raytrace.ptx.compiler.compile import CALLABLE, compile_all
-from nau_py.raytrace.ptx.compiler.reader import Function, Module, PtxError, read_ptx
-from nau_py.raytrace.ptx.optix.optix6 import Layout, calls, is_old
+from nau_py.raytrace.ptx.compiler.translate import CALLABLE, compile_all
+from nau_py.raytrace.ptx.compiler.reader import PtxFunction, PtxModule, PtxError, read_ptx
+from nau_py.raytrace.ptx.optix.optix6 import RecordLayout, calls, is_old
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import Session
-    from nau_py.raytrace.ptx.runtime.native import Native
+    from nau_py.raytrace.ptx.runtime.native import NativeModule
 
 
-Modules = dict[Path, "Module | PtxError | OSError"]
+Modules = dict[Path, "PtxModule | PtxError | OSError"]
 """By file; or why one cannot be read."""
 
 
-def find_function(module: Module, name: str) -> Function | None:
+def find_function(module: PtxModule, name: str) -> PtxFunction | None:
     """A function of a module, by its name as it stands or as C++ spells it."""
     found = module.functions.get(name)
     if found is None or found.body is None:
@@ -34,7 +34,7 @@ def find_function(module: Module, name: str) -> Function | None:
     return found
 
 
-def read_module(path: Path) -> Module:
+def read_module(path: Path) -> PtxModule:
     """Raises :class:`PtxError` and OSError."""
     return read_ptx(path.read_text("utf-8", "replace"))
 
@@ -62,8 +62,8 @@ class Programs:
 
         self.folder = session.project.folder
         self.label = f"project '{session.project.name}'"
-        self.modules: dict[Path, Module] = {}
-        self.natives: dict[Path, Native] = {}
+        self.modules: dict[Path, PtxModule] = {}
+        self.natives: dict[Path, NativeModule] = {}
         for program, *_ in used_programs(pass_):
             path = self._path(program)
             if path not in self.modules:
@@ -74,7 +74,7 @@ class Programs:
                 except (OSError, PtxError) as problem:
                     said = f"{label}: '{path.name}' cannot be read: {problem}"
                     raise ProgramError(error("T015", where, said)) from None
-        self.layout = Layout()
+        self.layout = RecordLayout()
         for module in self.modules.values():
             self.layout.add(module)
         self.old = any(is_old(module) for module in self.modules.values())
@@ -86,9 +86,9 @@ class Programs:
     def _label(self, program: Program) -> str:
         return f"{self.label}, program '{program.proc}'"
 
-    def native(self, program: Program) -> Native:
+    def native(self, program: Program) -> NativeModule:
         """The machine code of a program's module."""
-        from nau_py.raytrace.ptx.runtime.native import Native, NotNative
+        from nau_py.raytrace.ptx.runtime.native import NativeModule, NativeError
 
         path = self._path(program)
         if path not in self.natives:
@@ -98,8 +98,8 @@ class Programs:
                 said = f"{label}: {path.name}:{errors[0].line}: {errors[0]}"
                 raise ProgramError(error("T015", where, said))
             try:
-                self.natives[path] = Native(text)
-            except NotNative as problem:
+                self.natives[path] = NativeModule(text)
+            except NativeError as problem:
                 said = f"{label}: '{path.name}' gives no machine code: {problem}"
                 raise ProgramError(error("T015", where, said)) from None
         return self.natives[path]
@@ -143,7 +143,7 @@ def module_faults(pass_: RaytracePass, modules: Modules, folder: Path) -> Iterat
             for line, text in _errors(module):
                 yield error("T015", where, f"{label}: {path.name}:{line}: {text}")
         said.add(path)
-    read = {path: module for path, module in modules.items() if isinstance(module, Module)}
+    read = {path: module for path, module in modules.items() if isinstance(module, PtxModule)}
     old = [path.name for path, module in read.items() if is_old(module)]
     new = [path.name for path, module in read.items() if calls(module, "_optix_")]
     if old and new:
@@ -153,7 +153,7 @@ def module_faults(pass_: RaytracePass, modules: Modules, folder: Path) -> Iterat
             f"{label}: '{new[0]}' is of OptiX 7, '{old[0]}' of OptiX 3 to 6: a pass has one of "
             "them",
         )
-    layout = Layout()
+    layout = RecordLayout()
     for path, module in read.items():
         try:
             wrong = layout.add(module)
@@ -163,7 +163,7 @@ def module_faults(pass_: RaytracePass, modules: Modules, folder: Path) -> Iterat
             yield error("T015", pass_.location, f"{label}: {path.name}: {text}")
 
 
-def _errors(module: Module | PtxError | OSError) -> list[tuple[int, str]]:
+def _errors(module: PtxModule | PtxError | OSError) -> list[tuple[int, str]]:
     if isinstance(module, PtxError):
         return [(module.line, str(module))]
     if isinstance(module, OSError):

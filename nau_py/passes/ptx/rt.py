@@ -16,12 +16,12 @@ from nau_py.passes.frame import FrameContext, Session, View
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
 from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
-from nau_py.raytrace.ptx.compiler.compile import PARAMETERS
+from nau_py.raytrace.ptx.compiler.translate import PARAMETERS
 
 if TYPE_CHECKING:
     from nau_py.raster.targets import Target
-    from nau_py.raytrace.ptx.optix.records import Group, Surface
-    from nau_py.raytrace.ptx.runtime.launch import Launch
+    from nau_py.raytrace.ptx.optix.records import TriangleGroup, RecordMaterial
+    from nau_py.raytrace.ptx.runtime.launch import PtxLaunch
     from nau_py.scene.world import World
 
 _PAD = 2048
@@ -37,11 +37,11 @@ class RtState:
     """
 
     def __init__(self, pass_: RaytracePass, session: Session, programs: Programs) -> None:
-        from nau_py.raytrace.ptx.optix.records import Scene
+        from nau_py.raytrace.ptx.optix.records import RtScene
 
         self.session = session
         self.resources = Resources(session, pass_)
-        self.scene = Scene(list(groups(session.world, pass_)))
+        self.scene = RtScene(list(groups(session.world, pass_)))
         self.buffer = np.zeros(_PAD, np.uint32)
         self._last: tuple[Any, ...] | None = None
         self.sub_frame = 0
@@ -82,15 +82,15 @@ class RtState:
         self.context = record_table(1, 16)
         self.context[0, -16:-12] = np.frombuffer(np.int32(255).tobytes(), np.uint8)
 
-    def begin(self, pass_: RaytracePass, frame: FrameContext, view: View) -> Launch:
+    def begin(self, pass_: RaytracePass, frame: FrameContext, view: View) -> PtxLaunch:
         """The launch of a frame; the parameters of the programs are written."""
-        from nau_py.raytrace.ptx.runtime.launch import Launch
+        from nau_py.raytrace.ptx.runtime.launch import PtxLaunch
 
         data = self._parameters(pass_, frame, view)
         for native in self.programs.natives.values():
             native.set_variable(PARAMETERS, data)
         surfaces = [self._surface(group.material) for group in self.scene.groups]
-        return Launch(
+        return PtxLaunch(
             self.generate,
             self.scene.handle,
             self.scene.records(self._addresses, surfaces, self._used),
@@ -129,18 +129,18 @@ class RtState:
         if pass_value(frame.project, pass_, "COLOR_CLEAR") or self.sub_frame == 0:
             self.buffer[:] = 0
 
-    def _surface(self, name: str) -> Surface:
-        from nau_py.raytrace.ptx.optix.records import Surface
+    def _surface(self, name: str) -> RecordMaterial:
+        from nau_py.raytrace.ptx.optix.records import RecordMaterial
 
         found = self.session.world.materials.get(DEFAULT_LIBRARY, name)
         if found is None:
-            return Surface()
+            return RecordMaterial()
         colours = found.colours
         image = None
         if found.textures:
             binding = found.textures[min(found.textures)]
             image = self.resources.image(binding.texture, binding.path)
-        return Surface(
+        return RecordMaterial(
             colours["DIFFUSE"],
             colours["SPECULAR"],
             colours["EMISSION"],
@@ -192,9 +192,9 @@ def _program(entry: RayMaterial | None, types: list[str], index: int, kind: str)
     return None
 
 
-def groups(world: World, pass_: RaytracePass) -> Iterator[Group]:
+def groups(world: World, pass_: RaytracePass) -> Iterator[TriangleGroup]:
     """The objects by name, each material by name, in byte order; of a name the last counts."""
-    from nau_py.raytrace.ptx.optix.records import Group
+    from nau_py.raytrace.ptx.optix.records import TriangleGroup
 
     objects = {o.name: o for o in world.objects(pass_.scene_names)}
     for name in sorted(objects, key=str.encode):
@@ -208,4 +208,4 @@ def groups(world: World, pass_: RaytracePass) -> Iterator[Group]:
         for material in sorted(parts, key=str.encode):
             indices = np.concatenate(parts[material])
             if len(indices):
-                yield Group(material, attributes, np.ascontiguousarray(indices, np.uint32))
+                yield TriangleGroup(material, attributes, np.ascontiguousarray(indices, np.uint32))

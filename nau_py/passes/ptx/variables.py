@@ -12,8 +12,8 @@ from nau_py.model.raytrace import Program, RaytracePass, RayVariable
 from nau_py.passes.ptx.programs import Modules, find_function
 from nau_py.process.paths import resolve as resolve_path
 from nau_py.raytrace.programs.used import used_programs
-from nau_py.raytrace.ptx.compiler.reader import Function, Module, PtxError
-from nau_py.raytrace.ptx.optix.optix6 import Declared, declared
+from nau_py.raytrace.ptx.compiler.reader import PtxFunction, PtxModule, PtxError
+from nau_py.raytrace.ptx.optix.optix6 import DeclaredVariable, declared
 
 CAMERA = {"eye": 12, "U": 12, "V": 12, "W": 12, "fov": 4, "top_object": 4}
 """Variables of the context, and their bytes."""
@@ -48,7 +48,7 @@ def value_bytes(project: Project, node: RayVariable) -> int | None:
     return 4 * attribute.type.components if attribute is not None else None
 
 
-def mentioned(function: Function, names: dict[str, Declared]) -> list[str]:
+def mentioned(function: PtxFunction, names: dict[str, DeclaredVariable]) -> list[str]:
     """The variables that a function's own instructions name, in their order."""
     found: dict[str, None] = {}
     for instruction in function.body or []:
@@ -67,7 +67,7 @@ def variable_faults(
     said: set[str] = set()
     for program, *_ in used_programs(pass_):
         module = modules.get(resolve_path(project.folder, program.file or "").best)
-        if not isinstance(module, Module):
+        if not isinstance(module, PtxModule):
             continue
         try:
             names = declared(module)
@@ -85,7 +85,7 @@ def _variable(
     pass_: RaytracePass,
     program: Program,
     name: str,
-    variable: Declared,
+    variable: DeclaredVariable,
     known: dict[str, int | None],
 ) -> Iterator[Diagnostic]:
     label = f"pass '{pass_.name}': program '{program.proc}' of '{program.file}'"

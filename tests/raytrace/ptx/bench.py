@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.raytrace.ptx.compiler.compile import compile_module
 from nau_py.raytrace.ptx.compiler.reader import SIZES, read_ptx
-from nau_py.raytrace.ptx.runtime.launch import Launch, record_table, run_launch
-from nau_py.raytrace.ptx.runtime.native import Native
+from nau_py.raytrace.ptx.compiler.translate import compile_module
+from nau_py.raytrace.ptx.runtime.launch import PtxLaunch, record_table, run_launch
+from nau_py.raytrace.ptx.runtime.native import NativeModule
 
 Array = np.ndarray[Any, Any]
 TYPES = {
@@ -54,14 +54,14 @@ def run(body: str, inputs: dict[str, Array] | list[tuple[str, Array]], output: s
     """The outputs of ``body`` for the elements of (type, values) inputs."""
     listed = list(inputs.items()) if isinstance(inputs, dict) else inputs
     module = read_ptx(source(body, [t for t, _ in listed], output))
-    native = Native(compile_module(module))
+    native = NativeModule(compile_module(module))
     arrays = [np.ascontiguousarray(values, TYPES[type_]) for type_, values in listed]
     count = len(arrays[0])
     out = np.zeros(count, TYPES[output])
     pointers = np.array([a.ctypes.data for a in [*arrays, out]], np.uint64)
     native.set_variable("optixLaunchParams", pointers.tobytes())
     nothing = record_table(1, 16)
-    launch = Launch(
+    launch = PtxLaunch(
         (native, native.address("run")),
         0,
         nothing,

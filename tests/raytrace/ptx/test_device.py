@@ -12,21 +12,26 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nau_py.raytrace.ptx.compiler.compile import compile_module
 from nau_py.raytrace.ptx.compiler.reader import read_ptx
-from nau_py.raytrace.ptx.optix.records import DATA, Group, Scene, Surface
+from nau_py.raytrace.ptx.compiler.translate import compile_module
+from nau_py.raytrace.ptx.optix.records import DATA, RecordMaterial, RtScene, TriangleGroup
 from nau_py.raytrace.ptx.runtime.launch import (
     TYPES,
-    Launch,
-    Launched,
+    PtxLaunch,
+    PtxLaunchResult,
     block_of,
     frame_of,
     record_table,
     run_launch,
     set_program,
 )
+<<<<<<< HEAD
 from nau_py.raytrace.ptx.runtime.native import Native
 from nau_py.raytrace.tracing.accelerator import CustomGeometry, build_groups
+=======
+from nau_py.raytrace.ptx.runtime.native import NativeModule
+from nau_py.raytrace.tracing.accelerator import Custom, build_groups
+>>>>>>> 6c70048 (Classes of compiled programs have names of their own)
 
 COUNT = 33
 X = np.arange(COUNT) / 16 - 1
@@ -43,41 +48,41 @@ Array = np.ndarray[Any, Any]
 
 
 @pytest.fixture(scope="module")
-def native() -> Native:
+def native() -> NativeModule:
     text = (Path(__file__).parent / "data" / "new.ptx").read_text()
-    return Native(compile_module(read_ptx(text)))
+    return NativeModule(compile_module(read_ptx(text)))
 
 
 def launch(
-    native: Native,
+    native: NativeModule,
     generate: str,
     closest: str,
     miss: str = "",
     exception: str = "",
     callables: tuple[str, ...] = (),
-) -> tuple[Array, Launched]:
+) -> tuple[Array, PtxLaunchResult]:
     """What the launch indices write, float32 (n, 4), for a square in the plane z = 0."""
-    scene = Scene([Group("m", {"position": POSITIONS}, TRIANGLES)])
-    hits = scene.records([[(native.address(closest), 0)]], [Surface()], ["position"])
+    scene = RtScene([TriangleGroup("m", {"position": POSITIONS}, TRIANGLES)])
+    hits = scene.records([[(native.address(closest), 0)]], [RecordMaterial()], ["position"])
     return _run(native, generate, scene.handle, hits, miss, exception, callables)
 
 
 def _run(
-    native: Native,
+    native: NativeModule,
     generate: str,
     handle: int,
     hits: Array,
     miss: str = "",
     exception: str = "",
     callables: tuple[str, ...] = (),
-) -> tuple[Array, Launched]:
+) -> tuple[Array, PtxLaunchResult]:
     misses, context = record_table(1, DATA.itemsize), record_table(1, 16)
     set_program(misses[0], "closest", native.address(miss) if miss else 0)
     out = np.zeros((COUNT, 4), np.float32)
     parameters = np.array([out.ctypes.data, 1], np.uint64)
     native.set_variable("optixLaunchParams", parameters.tobytes())
     done = run_launch(
-        Launch(
+        PtxLaunch(
             (native, native.address(generate)),
             handle,
             hits,
@@ -93,7 +98,7 @@ def _run(
     return out, done
 
 
-def test_typed_payloads_of_32_words(native: Native) -> None:
+def test_typed_payloads_of_32_words(native: NativeModule) -> None:
     """Words go down with the ray and come back; front and back faces are told apart."""
     out, done = launch(native, "__raygen__typed", "__closesthit__typed", "__miss__typed")
     np.testing.assert_array_equal(
@@ -107,7 +112,7 @@ def test_typed_payloads_of_32_words(native: Native) -> None:
     assert done.thrown == 0
 
 
-def test_corners_and_attributes_of_triangles(native: Native) -> None:
+def test_corners_and_attributes_of_triangles(native: NativeModule) -> None:
     """Barycentrics weigh the corners to where the ray is; they are the first two attributes."""
     out, _ = launch(native, "__raygen__corners", "__closesthit__corners")
     np.testing.assert_allclose(out[INSIDE][:, 0], X[INSIDE], atol=1e-6)
@@ -135,7 +140,7 @@ SURE = (np.abs(np.abs(X) - 0.5) > 0.01) & (np.abs(X - 0.25) > 0.01)
         ),
     ],
 )
-def test_as_real_optix(native: Native, name: str, programs: tuple[str, ...]) -> None:
+def test_as_real_optix(native: NativeModule, name: str, programs: tuple[str, ...]) -> None:
     """To the bit, but for the depth that is left."""
     out, _ = launch(native, *programs)
     if name != "corners":
@@ -145,7 +150,7 @@ def test_as_real_optix(native: Native, name: str, programs: tuple[str, ...]) -> 
     np.testing.assert_array_equal(out.view(np.uint32)[SURE], real(name)[SURE])
 
 
-def test_exceptions_unwind_to_their_program(native: Native) -> None:
+def test_exceptions_unwind_to_their_program(native: NativeModule) -> None:
     out, done = launch(
         native, "__raygen__typed", "__closesthit__throws", exception="__exception__caught"
     )
@@ -158,7 +163,7 @@ def test_exceptions_unwind_to_their_program(native: Native) -> None:
     assert done.thrown == len(hit)
 
 
-def test_callable_programs(native: Native) -> None:
+def test_callable_programs(native: NativeModule) -> None:
     names = ("__direct_callable__add", "__continuation_callable__times")
     out, done = launch(native, "__raygen__calls", "__closesthit__typed", callables=names)
     x = np.arange(COUNT)
@@ -174,7 +179,7 @@ def test_callable_programs(native: Native) -> None:
         assert done.thrown == COUNT
 
 
-def test_intersection_programs_report_kind_and_attributes(native: Native) -> None:
+def test_intersection_programs_report_kind_and_attributes(native: NativeModule) -> None:
     """A square of the program's own; the any-hit program lets its right half through, where a second
     square behind it is hit."""
     hits = record_table(1, DATA.itemsize)
@@ -186,7 +191,7 @@ def test_intersection_programs_report_kind_and_attributes(native: Native) -> Non
         set_program(hits[0], kind, native.address(name))
     nothing = record_table(1, DATA.itemsize)
     rays, mark = np.zeros(TYPES, np.uint64), np.zeros(1, np.int64)
-    described = Launch((native, 0), 0, hits, nothing, nothing, (1, 1))
+    described = PtxLaunch((native, 0), 0, hits, nothing, nothing, (1, 1))
     block = block_of(described, rays, mark.ctypes.data)
     frame = frame_of(block, hits[0])
     user = np.array([native.address("box"), frame.ctypes.data], np.uint64)

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nau_py.raytrace.ptx.compiler.compile import compile_module
-from nau_py.raytrace.ptx.compiler.reader import Module, read_ptx
-from nau_py.raytrace.ptx.runtime.launch import Launch, record_table, run_launch
-from nau_py.raytrace.ptx.runtime.native import Native
+from nau_py.raytrace.ptx.compiler.reader import PtxModule, read_ptx
+from nau_py.raytrace.ptx.compiler.translate import compile_module
+from nau_py.raytrace.ptx.runtime.launch import PtxLaunch, record_table, run_launch
+from nau_py.raytrace.ptx.runtime.native import NativeModule
 from tests.raytrace.ptx.on_gpu import COUNT, ORDER, OUTPUTS, inputs
 
 DATA = Path(__file__).parent / "data"
@@ -30,8 +30,8 @@ Array = np.ndarray[Any, Any]
 
 
 @pytest.fixture(scope="module")
-def module() -> tuple[Module, Native]:
-    return MODULE, Native(compile_module(MODULE))
+def module() -> tuple[PtxModule, NativeModule]:
+    return MODULE, NativeModule(compile_module(MODULE))
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,9 @@ def test_all_kernels_ran_on_the_card(card: dict[str, Array]) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_as_on_the_card(module: tuple[Module, Native], card: dict[str, Array], name: str) -> None:
+def test_as_on_the_card(
+    module: tuple[PtxModule, NativeModule], card: dict[str, Array], name: str
+) -> None:
     """To the bit, but for approximate functions; NaN where the card has NaN."""
     text, native = module
     given = inputs()
@@ -55,7 +57,7 @@ def test_as_on_the_card(module: tuple[Module, Native], card: dict[str, Array], n
     native.set_variable("optixLaunchParams", places.tobytes())
     none = record_table(1, 16)
     generate = (native, native.address(name))
-    launch = Launch(generate, 0, none, none, none, (COUNT, 1), flush=text.flushes)
+    launch = PtxLaunch(generate, 0, none, none, none, (COUNT, 1), flush=text.flushes)
     run_launch(launch, [native], threads=1)
     found, wanted = written[name[0]], card[name]
     if name[2:] not in APPROXIMATE:

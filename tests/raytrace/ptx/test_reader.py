@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from nau_py.raytrace.ptx.compiler.compile import compile_all, compile_module
+from nau_py.raytrace.ptx.compiler.analysis import analyse_program
 from nau_py.raytrace.ptx.compiler.reader import PtxError, read_ptx
-from nau_py.raytrace.ptx.compiler.uses import uses_of
-from nau_py.raytrace.ptx.optix.optix6 import Layout, declared
-from nau_py.raytrace.ptx.runtime.native import Native, NotNative
+from nau_py.raytrace.ptx.compiler.translate import compile_all, compile_module
+from nau_py.raytrace.ptx.optix.optix6 import RecordLayout, declared
+from nau_py.raytrace.ptx.runtime.native import NativeError, NativeModule
 from tests.raytrace.ptx.bench import HEAD, source
 
 DATA = Path(__file__).parent / "data"
@@ -57,7 +57,7 @@ def test_declarations_and_initial_values() -> None:
     native = compile_module(module)
     assert "i8 72, i8 105, i8 10, i8 0" in native
     assert "i8 16, i8 0, i8 0, i8 0, i8 255" in native
-    Native(native)
+    NativeModule(native)
 
 
 @pytest.mark.parametrize(
@@ -130,13 +130,13 @@ def survives(text: str, chance: random.Random, native: bool) -> None:
         module = read_ptx(mutated(text, chance))
         made, said = compile_all(module)
         for function in module.functions.values():
-            uses_of(module, function)
+            analyse_program(module, function)
     except PtxError as problem:
         said = [problem]
     assert all(problem.line >= 1 and str(problem) for problem in said)
     if native and made and not said:
-        with contextlib.suppress(NotNative):
-            Native(made)
+        with contextlib.suppress(NativeError):
+            NativeModule(made)
 
 
 def test_broken_texts_end_in_messages() -> None:
@@ -156,13 +156,13 @@ def test_machine_code_is_kept_and_checked(tmp_path: Path, monkeypatch: pytest.Mo
     """The second time it comes from the file; one that is not whole is not taken."""
     monkeypatch.setattr("nau_py.raytrace.ptx.runtime.native.cache_folder", lambda: str(tmp_path))
     text = compile_module(read_ptx(ROOM))
-    assert Native(text).address("__miss__blue")
+    assert NativeModule(text).address("__miss__blue")
     (kept,) = tmp_path.iterdir()
     whole = kept.read_bytes()
-    assert Native(text).address("__miss__blue")
+    assert NativeModule(text).address("__miss__blue")
     assert kept.read_bytes() == whole
     kept.write_bytes(whole[:-7])
-    assert Native(text).address("__raygen__camera")
+    assert NativeModule(text).address("__raygen__camera")
     assert kept.read_bytes() == whole
 
 
@@ -182,7 +182,7 @@ def test_attributes_of_all_files_have_one_size() -> None:
     text = (DATA / "old.ptx").read_text()
     name = "_ZN21rti_internal_typeinfo4toldE[8] = {82, 97, 121, 0, "
     assert f"{name}16" in text
-    layout = Layout()
+    layout = RecordLayout()
     assert layout.add(read_ptx(text)) == []
     (said,) = layout.add(read_ptx(text.replace(f"{name}16", f"{name}8")))
     assert said == "attribute 'told' has 8 bytes, elsewhere in the pass 16"

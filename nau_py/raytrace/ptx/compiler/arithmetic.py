@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from nau_py.raytrace.ptx.compiler.function import Writer, float_text, is_float, is_signed, llvm
 from nau_py.raytrace.ptx.compiler.reader import SIZES
 from nau_py.raytrace.ptx.compiler.rounding import rounded
+from nau_py.raytrace.ptx.compiler.writer import (
+    FunctionWriter,
+    float_text,
+    is_float,
+    is_signed,
+    llvm,
+)
 
-Handler = Callable[[Writer, list[str], tuple[str, ...]], None]
+Handler = Callable[[FunctionWriter, list[str], tuple[str, ...]], None]
 _ORDERED = {"eq": "oeq", "ne": "one", "lt": "olt", "le": "ole", "gt": "ogt", "ge": "oge"}
 _ORDERED |= {"equ": "ueq", "neu": "une", "ltu": "ult", "leu": "ule", "gtu": "ugt", "geu": "uge"}
 _ORDERED |= {"num": "ord", "nan": "uno"}
@@ -17,7 +23,7 @@ _UNSIGNED = {"lt": "ult", "le": "ule", "gt": "ugt", "ge": "uge"}
 _UNSIGNED |= {"lo": "ult", "ls": "ule", "hi": "ugt", "hs": "uge"}
 
 
-def type_in(w: Writer, words: list[str]) -> str:
+def type_in(w: FunctionWriter, words: list[str]) -> str:
     """The last type that an opcode names."""
     found = next((word for word in reversed(words) if word in SIZES), None)
     if found is None:
@@ -25,7 +31,7 @@ def type_in(w: Writer, words: list[str]) -> str:
     return found
 
 
-def _saturated(w: Writer, words: list[str], value: str, type_: str) -> str:
+def _saturated(w: FunctionWriter, words: list[str], value: str, type_: str) -> str:
     """``.sat`` of a float: into 0..1, NaN to 0."""
     if "sat" not in words:
         return value
@@ -36,7 +42,7 @@ def _saturated(w: Writer, words: list[str], value: str, type_: str) -> str:
 
 
 def _binary(integer: str) -> Handler:
-    def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
         a, b = w.read(operands[1], type_), w.read(operands[2], type_)
         t = llvm(type_)
@@ -53,7 +59,7 @@ def _binary(integer: str) -> Handler:
     return handle
 
 
-def _with_carry(w: Writer, how: str, t: str, a: str, b: str) -> str:
+def _with_carry(w: FunctionWriter, how: str, t: str, a: str, b: str) -> str:
     pair = w.value(f"call {{{t}, i1}} @llvm.u{how}.with.overflow.{t}({t} {a}, {t} {b})")
     w.emit(f"store i1 {w.value(f'extractvalue {{{t}, i1}} {pair}, 1')}, ptr %carry")
     return w.value(f"extractvalue {{{t}, i1}} {pair}, 0")
@@ -62,7 +68,7 @@ def _with_carry(w: Writer, how: str, t: str, a: str, b: str) -> str:
 def _carried(how: str) -> Handler:
     """``addc`` and ``subc``: with the carry of the one before."""
 
-    def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
         t = llvm(type_)
         a, b = w.read(operands[1], type_), w.read(operands[2], type_)
@@ -71,7 +77,7 @@ def _carried(how: str) -> Handler:
     return handle
 
 
-def _chain(w: Writer, how: str, t: str, a: str, b: str, keep: bool) -> str:
+def _chain(w: FunctionWriter, how: str, t: str, a: str, b: str, keep: bool) -> str:
     carry = w.value(f"zext i1 {w.value('load i1, ptr %carry')} to {t}")
     name = f"@llvm.u{how}.with.overflow.{t}"
     first = w.value(f"call {{{t}, i1}} {name}({t} {a}, {t} {b})")
@@ -83,14 +89,14 @@ def _chain(w: Writer, how: str, t: str, a: str, b: str, keep: bool) -> str:
     return w.value(f"extractvalue {{{t}, i1}} {second}, 0")
 
 
-def _wide(w: Writer, type_: str, value: str) -> tuple[str, str]:
+def _wide(w: FunctionWriter, type_: str, value: str) -> tuple[str, str]:
     """An integer at twice its width."""
     t = f"i{16 * SIZES[type_]}"
     how = "sext" if is_signed(type_) else "zext"
     return w.value(f"{how} {llvm(type_)} {value} to {t}"), t
 
 
-def _product(w: Writer, words: list[str], type_: str, a: str, b: str) -> tuple[str, str]:
+def _product(w: FunctionWriter, words: list[str], type_: str, a: str, b: str) -> tuple[str, str]:
     """The product of integers, and its type: low half, high half or all of it."""
     t = llvm(type_)
     if "wide" in words and SIZES[type_] == 8:
@@ -105,7 +111,7 @@ def _product(w: Writer, words: list[str], type_: str, a: str, b: str) -> tuple[s
     return w.value(f"mul {t} {a}, {b}"), type_
 
 
-def mul(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def mul(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
     if is_float(type_):
@@ -115,7 +121,7 @@ def mul(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], *_product(w, words, type_, a, b))
 
 
-def mad(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def mad(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """``mad`` and ``fma``; with ``cc`` the sum sets the carry, in ``madc`` it takes it."""
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
@@ -132,7 +138,7 @@ def mad(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], value, wide)
 
 
-def madc(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def madc(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
     product, wide = _product(w, words, type_, a, b)
@@ -140,7 +146,7 @@ def madc(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], _chain(w, "add", llvm(wide), product, c, "cc" in words), wide)
 
 
-def div(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def div(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
     if is_float(type_):
@@ -150,7 +156,7 @@ def div(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], _divided(w, "div", type_, a, b), type_)
 
 
-def _of_huge(w: Writer, a: str, b: str, value: str) -> str:
+def _of_huge(w: FunctionWriter, a: str, b: str, value: str) -> str:
     """``div.approx`` by more than 2**126: the reciprocal is 0 (9.7.3.8)."""
     size = w.value(f"call float @llvm.fabs.f32(float {b})")
     huge = w.value(f"fcmp ogt float {size}, {float_text(2.0**126, 'f32')}")
@@ -161,13 +167,13 @@ def _of_huge(w: Writer, a: str, b: str, value: str) -> str:
     return w.value(f"select i1 {both}, float {product}, float {value}")
 
 
-def rem(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def rem(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
     w.write(operands[0], _divided(w, "rem", type_, a, b), type_)
 
 
-def _divided(w: Writer, how: str, type_: str, a: str, b: str) -> str:
+def _divided(w: FunctionWriter, how: str, type_: str, a: str, b: str) -> str:
     """By 0 there is no defined result, but there must be one: all bits set, as the hardware has
     it; and of the least by -1 nothing may trap."""
     t, signed = llvm(type_), is_signed(type_)
@@ -186,7 +192,7 @@ def _divided(w: Writer, how: str, type_: str, a: str, b: str) -> str:
     return w.value(f"select i1 {zero}, {t} -1, {t} {value}")
 
 
-def _with_zero(w: Writer, how: str, type_: str, a: str, b: str, plain: str) -> str:
+def _with_zero(w: FunctionWriter, how: str, type_: str, a: str, b: str, plain: str) -> str:
     """The lesser or greater of equal numbers: by their bits, for zeros have a sign."""
     t, bits = llvm(type_), f"i{8 * SIZES[type_]}"
     same = w.value(f"fcmp oeq {t} {a}, {b}")
@@ -197,7 +203,7 @@ def _with_zero(w: Writer, how: str, type_: str, a: str, b: str, plain: str) -> s
 
 
 def _extreme(how: str) -> Handler:
-    def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
         a, b = w.read(operands[1], type_), w.read(operands[2], type_)
         t = llvm(type_)
@@ -211,14 +217,14 @@ def _extreme(how: str) -> Handler:
     return handle
 
 
-def negate(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def negate(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, t = w.read(operands[1], type_), llvm(type_)
     text = f"fneg {t} {a}" if is_float(type_) else f"sub {t} 0, {a}"
     w.write(operands[0], w.value(text), type_)
 
 
-def absolute(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def absolute(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, t = w.read(operands[1], type_), llvm(type_)
     call = f"fabs.{type_}({t} {a})" if is_float(type_) else f"abs.{t}({t} {a}, i1 false)"
@@ -228,7 +234,7 @@ def absolute(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
 def _function(name: str) -> Handler:
     """A function of one number; approximate ones are exact here (9.7.3)."""
 
-    def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
         a, t = w.read(operands[1], type_), llvm(type_)
         w.write(operands[0], w.value(f"call {t} @llvm.{name}.{type_}({t} {a})"), type_)
@@ -236,18 +242,18 @@ def _function(name: str) -> Handler:
     return handle
 
 
-def reciprocal(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def reciprocal(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a = w.read(operands[1], type_)
     w.write(operands[0], rounded(w, words, type_, "div", ["1.0", a]), type_)
 
 
-def root(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def root(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     w.write(operands[0], rounded(w, words, type_, "sqrt", [w.read(operands[1], type_)]), type_)
 
 
-def copysign(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def copysign(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """The second with the sign of the first (9.7.3.5)."""
     type_ = type_in(w, words)
     a, b, t = w.read(operands[1], type_), w.read(operands[2], type_), llvm(type_)
@@ -255,7 +261,7 @@ def copysign(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], w.value(call), type_)
 
 
-def testp(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def testp(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """What kind of number a float is."""
     type_ = type_in(w, words)
     a, t = w.read(operands[1], type_), llvm(type_)
@@ -268,19 +274,19 @@ def testp(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], w.value(call), "pred")
 
 
-def root_reciprocal(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def root_reciprocal(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, t = w.read(operands[1], type_), llvm(type_)
     root = w.value(f"call {t} @llvm.sqrt.{type_}({t} {a})")
     w.write(operands[0], w.value(f"fdiv {t} 1.0, {root}"), type_)
 
 
-def tangent_hyperbolic(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def tangent_hyperbolic(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     a = w.read(operands[1], "f32")
     w.write(operands[0], w.value(f"call float @llvm.tanh.f32(float {a})"), "f32")
 
 
-def compare(w: Writer, words: list[str], type_: str, a: str, b: str) -> str:
+def compare(w: FunctionWriter, words: list[str], type_: str, a: str, b: str) -> str:
     """The truth of a comparison."""
     how = words[0]
     t = llvm(type_)
@@ -295,7 +301,7 @@ def compare(w: Writer, words: list[str], type_: str, a: str, b: str) -> str:
     return w.value(f"icmp {known[how]} {t} {a}, {b}")
 
 
-def setp(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def setp(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """``setp.lt.f32 p|q, a, b``, and combined with another predicate: ``setp.lt.and.f32 p, a, b,
     c``."""
     type_ = type_in(w, words)
@@ -310,7 +316,7 @@ def setp(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
         w.write(out, value, "pred")
 
 
-def set_(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def set_(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """``set.lt.u32.f32``: all bits, or 1.0, where it is true."""
     types = [x for x in words if x in SIZES]
     target, type_ = types[0], types[-1]
@@ -323,14 +329,14 @@ def set_(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], w.value(f"select i1 {truth}, {t} {yes}, {t} {no}"), target)
 
 
-def selp(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def selp(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
     p, t = w.read(operands[3], "pred"), llvm(type_)
     w.write(operands[0], w.value(f"select i1 {p}, {t} {a}, {t} {b}"), type_)
 
 
-def slct(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def slct(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """The first where the third is not negative, else the second."""
     type_, of = next(x for x in words if x in SIZES), type_in(w, words)
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
@@ -340,7 +346,7 @@ def slct(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
 
 
 def _logic(how: str) -> Handler:
-    def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
         a, b = w.read(operands[1], type_), w.read(operands[2], type_)
         w.write(operands[0], w.value(f"{how} {llvm(type_)} {a}, {b}"), type_)
@@ -348,13 +354,13 @@ def _logic(how: str) -> Handler:
     return handle
 
 
-def not_(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def not_(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, t = w.read(operands[1], type_), llvm(type_)
     w.write(operands[0], w.value(f"xor {t} {a}, {'true' if type_ == 'pred' else '-1'}"), type_)
 
 
-def cnot(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def cnot(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     a, t = w.read(operands[1], type_), llvm(type_)
     truth = w.value(f"icmp eq {t} {a}, 0")
@@ -364,7 +370,7 @@ def cnot(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
 def _shift(left: bool) -> Handler:
     """Shifts past the width give 0, of signed ones the sign (9.7.8)."""
 
-    def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
         bits, t = 8 * SIZES[type_], llvm(type_)
         a, by = w.read(operands[1], type_), w.read(operands[2], "u32")

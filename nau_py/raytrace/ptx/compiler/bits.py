@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from nau_py.raytrace.ptx.compiler.arithmetic import Handler, type_in
-from nau_py.raytrace.ptx.compiler.function import Writer, is_float, is_signed, llvm
 from nau_py.raytrace.ptx.compiler.reader import SIZES
 from nau_py.raytrace.ptx.compiler.rounding import mode_of, narrowed, of_integer
+from nau_py.raytrace.ptx.compiler.writer import FunctionWriter, is_float, is_signed, llvm
 
 _ROUND = {"rni": "rint", "rzi": "trunc", "rmi": "floor", "rpi": "ceil"}
 
 
 def _count(name: str, extra: str = "") -> Handler:
-    def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
         t = llvm(type_)
         value = w.value(f"call {t} @llvm.{name}.{t}({t} {w.read(operands[1], type_)}{extra})")
@@ -23,7 +23,7 @@ def _count(name: str, extra: str = "") -> Handler:
     return handle
 
 
-def bfind(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def bfind(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """The place of the highest bit (of signed ones, of the highest that is not the sign), or all
     bits set where there is none."""
     type_ = type_in(w, words)
@@ -39,7 +39,7 @@ def bfind(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], w.fit(place, "s" + type_[1:], "u32"), "u32")
 
 
-def bfe(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def bfe(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """A field of bits: from a place, so long; of signed ones filled up with its highest bit."""
     type_ = type_in(w, words)
     t, bits = llvm(type_), 8 * SIZES[type_]
@@ -61,7 +61,7 @@ def bfe(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], w.value(f"select i1 {none}, {t} 0, {t} {cut}"), type_)
 
 
-def bfi(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def bfi(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """The low bits of the first in the second, at a place, so many."""
     type_ = type_in(w, words)
     t, bits = llvm(type_), 8 * SIZES[type_]
@@ -79,17 +79,17 @@ def bfi(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], w.value(f"trunc {wide} {both} to {t}"), type_)
 
 
-def _limited(w: Writer, value: str, bits: int, wide: str) -> str:
+def _limited(w: FunctionWriter, value: str, bits: int, wide: str) -> str:
     least = w.value(f"call i32 @llvm.umin.i32(i32 {value}, i32 {bits})")
     return w.value(f"zext i32 {least} to {wide}")
 
 
-def _byte(w: Writer, operand: str) -> str:
+def _byte(w: FunctionWriter, operand: str) -> str:
     """The low eight bits of an operand."""
     return w.value(f"and i32 {w.read(operand, 'u32')}, 255")
 
 
-def prmt(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def prmt(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """Four bytes chosen out of eight, each by four bits; the highest says to repeat the sign."""
     if any(word in words for word in ("f4e", "b4e", "rc8", "ecl", "ecr", "rc16")):
         raise w.fail("modes of 'prmt' are not supported")
@@ -111,7 +111,7 @@ def prmt(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], result, "u32")
 
 
-def mov(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def mov(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """Copies; ``{a, b}`` takes a value apart or puts it together (9.7.9.4)."""
     type_ = type_in(w, words)
     to, source = w.vector(operands[0]), w.vector(operands[1])
@@ -134,7 +134,7 @@ def mov(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
         w.write(operand, w.value(f"trunc {t} {moved} to i{bits}"), part)
 
 
-def cvt(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def cvt(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """Conversions (9.7.9.21): ``cvt.rounding.to.from``."""
     types = [word for word in words if word in SIZES]
     if len(types) != 2:
@@ -162,7 +162,7 @@ def cvt(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], made, to)
 
 
-def _half(w: Writer, words: list[str], types: list[str], operands: tuple[str, ...]) -> None:
+def _half(w: FunctionWriter, words: list[str], types: list[str], operands: tuple[str, ...]) -> None:
     """To and from half floats, which are bits in registers of 16."""
     to, source = types
     if not (is_float(to) or is_float(source)) or mode_of(words):
@@ -178,7 +178,13 @@ def _half(w: Writer, words: list[str], types: list[str], operands: tuple[str, ..
 
 
 def _between_floats(
-    w: Writer, value: str, source: str, to: str, rounding: str | None, mode: str, words: list[str]
+    w: FunctionWriter,
+    value: str,
+    source: str,
+    to: str,
+    rounding: str | None,
+    mode: str,
+    words: list[str],
 ) -> str:
     if rounding:
         t = llvm(source)
@@ -191,13 +197,13 @@ def _between_floats(
     return _clamped(w, value, to) if "sat" in words else value
 
 
-def _clamped(w: Writer, value: str, type_: str) -> str:
+def _clamped(w: FunctionWriter, value: str, type_: str) -> str:
     t = llvm(type_)
     low = w.value(f"call {t} @llvm.maxnum.{type_}({t} {value}, {t} 0.0)")
     return w.value(f"call {t} @llvm.minnum.{type_}({t} {low}, {t} 1.0)")
 
 
-def _to_integer(w: Writer, value: str, source: str, to: str, rounding: str) -> str:
+def _to_integer(w: FunctionWriter, value: str, source: str, to: str, rounding: str) -> str:
     """Rounded, then clamped to what the type holds; NaN gives 0."""
     t, goal = llvm(source), llvm(to)
     whole = w.value(f"call {t} @llvm.{_ROUND[rounding]}.{source}({t} {value})")
@@ -205,7 +211,7 @@ def _to_integer(w: Writer, value: str, source: str, to: str, rounding: str) -> s
     return w.value(f"call {goal} @llvm.fpto{sign}i.sat.{goal}.{source}({t} {whole})")
 
 
-def _between_integers(w: Writer, value: str, source: str, to: str, saturate: bool) -> str:
+def _between_integers(w: FunctionWriter, value: str, source: str, to: str, saturate: bool) -> str:
     have, want = 8 * SIZES[source], 8 * SIZES[to]
     if saturate and (want < have or is_signed(source) != is_signed(to)):
         raise w.fail("saturation between integers is not supported")
@@ -215,7 +221,7 @@ def _between_integers(w: Writer, value: str, source: str, to: str, saturate: boo
     return w.value(f"{how} i{have} {value} to i{want}")
 
 
-def address(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def address(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """``cvta``: all spaces are one here."""
     type_ = type_in(w, words)
     w.write(operands[0], w.read(operands[1], type_), type_)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from nau_py.raytrace.ptx.compiler.function import WHOLE_NUMBER, integer
-from nau_py.raytrace.ptx.compiler.reader import SIZES, PtxError, Variable
+from nau_py.raytrace.ptx.compiler.reader import SIZES, PtxError, PtxVariable
+from nau_py.raytrace.ptx.compiler.writer import WHOLE_NUMBER, integer
 
 _HEX_FLOAT = re.compile(r"0[fFdD]([0-9a-fA-F]{8}|[0-9a-fA-F]{16})$")
 _SYMBOL = re.compile(r"(?:generic\()?([A-Za-z_$%][\w$]*)\)?(?:\s*\+\s*(\d+))?$")
@@ -13,7 +13,7 @@ Part = int | tuple[str, int]
 """A number, or a name and what is added to its address."""
 
 
-def _parts(variable: Variable) -> list[Part]:
+def _parts(variable: PtxVariable) -> list[Part]:
     """The values of an initialiser, one an element. Raises :class:`PtxError`."""
     found: list[Part] = []
     for word in variable.value.replace("{", " ").replace("}", " ").split(","):
@@ -36,7 +36,7 @@ def _parts(variable: Variable) -> list[Part]:
     return found
 
 
-def initial_bytes(variable: Variable) -> bytes | None:
+def initial_bytes(variable: PtxVariable) -> bytes | None:
     """What a variable holds at first, addresses as 0; None where the text does not say."""
     if not variable.value:
         return None
@@ -45,7 +45,7 @@ def initial_bytes(variable: Variable) -> bytes | None:
     return b"".join((value % (1 << 8 * width)).to_bytes(width, "little") for value in values)
 
 
-def global_text(variable: Variable, known: dict[str, str]) -> str:
+def global_text(variable: PtxVariable, known: dict[str, str]) -> str:
     """Memory of a variable. ``known``: LLVM's names of what has an address. Raises
     :class:`PtxError`."""
     size = max(variable.size, 1)
@@ -64,7 +64,7 @@ def global_text(variable: Variable, known: dict[str, str]) -> str:
     return f"{head} [{size} x i8] {text}, {align}"
 
 
-def _address(variable: Variable, part: Part, known: dict[str, str]) -> str:
+def _address(variable: PtxVariable, part: Part, known: dict[str, str]) -> str:
     if isinstance(part, int):
         return f"i64 {part % (1 << 64)}"
     name, more = part

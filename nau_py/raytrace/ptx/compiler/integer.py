@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from nau_py.raytrace.ptx.compiler.arithmetic import Handler, type_in
-from nau_py.raytrace.ptx.compiler.function import (
+from nau_py.raytrace.ptx.compiler.reader import SIZES
+from nau_py.raytrace.ptx.compiler.writer import (
     WHOLE_NUMBER,
-    Writer,
+    FunctionWriter,
     integer,
     is_float,
     is_signed,
     llvm,
 )
-from nau_py.raytrace.ptx.compiler.reader import SIZES
 
 
-def sad(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def sad(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """The distance of two numbers, added to a third."""
     type_ = type_in(w, words)
     t, sign = llvm(type_), "s" if is_signed(type_) else "u"
@@ -24,7 +24,7 @@ def sad(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], w.value(f"add {t} {w.value(f'sub {t} {high}, {low}')}, {c}"), type_)
 
 
-def shf(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def shf(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """Funnel shift of two words: the second one above the first."""
     low, high, by = (w.read(operand, "u32") for operand in operands[1:4])
     if "clamp" in words:
@@ -41,7 +41,7 @@ def shf(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], w.value(f"trunc i64 {both} to i32"), "u32")
 
 
-def lop3(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def lop3(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """Any logic of three words, by its table of eight bits."""
     a, b, c = (w.read(operand, "b32") for operand in operands[1:4])
     if not WHOLE_NUMBER.match(operands[4]):
@@ -63,7 +63,7 @@ def lop3(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
 def _dot(parts: int) -> Handler:
     """``dp4a`` and ``dp2a``: bytes times bytes, or halves times two of the bytes, and a sum."""
 
-    def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         types = [word for word in words if word in SIZES]
         a, b, total = (w.read(operand, "u32") for operand in operands[1:4])
         width = 32 // parts
@@ -77,7 +77,7 @@ def _dot(parts: int) -> Handler:
     return handle
 
 
-def _field(w: Writer, word: str, at: int, bits: int, signed: bool) -> str:
+def _field(w: FunctionWriter, word: str, at: int, bits: int, signed: bool) -> str:
     cut = w.value(f"trunc i32 {w.value(f'lshr i32 {word}, {at}')} to i{bits}")
     return w.value(f"{'sext' if signed else 'zext'} i{bits} {cut} to i32")
 
@@ -85,7 +85,7 @@ def _field(w: Writer, word: str, at: int, bits: int, signed: bool) -> str:
 def _24(add: bool) -> Handler:
     """``mul24`` and ``mad24``: of the low 24 bits; the low or the high half of 48."""
 
-    def handle(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+    def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
         down = "ashr" if is_signed(type_) else "lshr"
         how = "sext" if is_signed(type_) else "zext"
@@ -107,7 +107,7 @@ def _24(add: bool) -> Handler:
 _ATOMIC = {"and": "and", "or": "or", "xor": "xor", "exch": "xchg", "add": "add"}
 
 
-def atom(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def atom(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """``atom d, [a], b`` and ``red [a], b``: on what other launch indices write, too."""
     type_ = type_in(w, words)
     keeps = len(operands) > 2 or "cas" in words

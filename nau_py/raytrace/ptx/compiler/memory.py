@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from nau_py.raytrace.ptx.compiler.arithmetic import Handler, type_in
-from nau_py.raytrace.ptx.compiler.function import Writer, llvm
 from nau_py.raytrace.ptx.compiler.reader import SIZES
+from nau_py.raytrace.ptx.compiler.writer import FunctionWriter, llvm
 
 _TEXTURES = {"1d": 1, "2d": 2, "3d": 3}
 
 
-def load(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def load(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     pointer = w.pointer(operands[1])
     for index, target in enumerate(w.vector(operands[0])):
@@ -21,7 +21,7 @@ def load(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
         w.write(target, value, type_)
 
 
-def store(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def store(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     pointer = w.pointer(operands[0])
     values = [w.read(part, type_) for part in w.vector(operands[1])]
@@ -33,7 +33,7 @@ def store(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
         w.emit(f"store {volatile}{llvm(type_)} {value}, ptr {place}, align 1")
 
 
-def texture(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def texture(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """``tex.2d.v4.f32.f32 {r,g,b,a}, [handle, {x, y}]``: by the runtime's sampler. Textures have
     one level here, so one that is asked for, or gradients, change nothing."""
     if words[0] in ("base", "level", "grad"):
@@ -57,7 +57,7 @@ def texture(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
         w.write(target, w.value(f"load float, ptr {element}"), "f32")
 
 
-def nothing(w: Writer, words: list[str], operands: tuple[str, ...]) -> None:
+def nothing(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     """Hints and barriers: one thread does one launch index."""
 
 

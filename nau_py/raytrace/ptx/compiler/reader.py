@@ -46,7 +46,7 @@ class PtxError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Variable:
+class PtxVariable:
     """A variable: ``count`` registers of the name with numbers, or an array of ``length``."""
 
     space: str
@@ -65,7 +65,7 @@ class Variable:
 
 
 @dataclass(frozen=True, slots=True)
-class Instruction:
+class PtxInstruction:
     """``@guard opcode operands``. ``guard``: a predicate, ``!`` before it where it must be false;
     ``label``: the name of a place instead of an instruction."""
 
@@ -77,28 +77,28 @@ class Instruction:
 
 
 @dataclass(slots=True)
-class Function:
+class PtxFunction:
     """An entry point (``.entry``) or function (``.func``); ``body`` is None where it is only
     declared."""
 
     name: str
     entry: bool
     visible: bool
-    returns: list[Variable]
-    takes: list[Variable]
+    returns: list[PtxVariable]
+    takes: list[PtxVariable]
     line: int
-    variables: list[Variable] = field(default_factory=list)
-    body: list[Instruction] | None = None
+    variables: list[PtxVariable] = field(default_factory=list)
+    body: list[PtxInstruction] | None = None
     tables: dict[str, list[str]] = field(default_factory=dict)
     """Lists of labels that ``brx.idx`` chooses from, by name."""
 
 
 @dataclass
-class Module:
+class PtxModule:
     """A module: its variables outside of functions, and its functions by name."""
 
-    variables: list[Variable] = field(default_factory=list)
-    functions: dict[str, Function] = field(default_factory=dict)
+    variables: list[PtxVariable] = field(default_factory=list)
+    functions: dict[str, PtxFunction] = field(default_factory=dict)
 
     @cached_property
     def flushes(self) -> bool:
@@ -125,7 +125,7 @@ _TOKEN = re.compile(r"[%A-Za-z$_][\w$]*")
 _NUMBERED = re.compile(r"(.*?)(\d+)$")
 
 
-class _Scopes:
+class _BlockScopes:
     """Blocks inside of a function: what they declare is theirs, whatever else has that name (5.4).
     Their variables get names of their own, so that a function has one list of them."""
 
@@ -141,7 +141,7 @@ class _Scopes:
         if self._open:
             self._open.pop()
 
-    def declared(self, variable: Variable) -> Variable:
+    def declared(self, variable: PtxVariable) -> PtxVariable:
         if len(self._open) < 2:  # of the function itself
             return variable
         number, names, families = self._open[-1]
@@ -161,19 +161,19 @@ class _Scopes:
                 return f"{numbered[1]}.s{number}.{numbered[2]}"
         return word
 
-    def renamed(self, made: Instruction) -> Instruction:
+    def renamed(self, made: PtxInstruction) -> PtxInstruction:
         if not any(names or families for _, names, families in self._open[1:]):
             return made
         operands = tuple(_TOKEN.sub(self._name, operand) for operand in made.operands)
         return replace(made, operands=operands, guard=_TOKEN.sub(self._name, made.guard))
 
 
-class _Reader:
+class _ModuleReader:
     def __init__(self, text: str) -> None:
         self.text = _without_comments(text)
         self.at = 0
         self.line = 1
-        self.module = Module()
+        self.module = PtxModule()
 
     def fail(self, message: str) -> PtxError:
         return PtxError(self.line, message)
@@ -201,7 +201,7 @@ class _Reader:
         self.at += 1
         return found.strip()
 
-    def run(self) -> Module:
+    def run(self) -> PtxModule:
         while self.skip():
             rest = self.text[self.at : self.at + 400]
             head = _HEAD.match(self.text, self.at)
@@ -230,7 +230,7 @@ class _Reader:
     def function(self, head: re.Match[str]) -> None:
         line = self.line
         self.take(head.end())
-        made = Function(
+        made = PtxFunction(
             head["name"],
             head["kind"] == "entry",
             "visible" in head["linkage"],
@@ -252,10 +252,10 @@ class _Reader:
         if known is None or known.body is None:
             self.module.functions[made.name] = made
 
-    def body(self, made: Function) -> None:
+    def body(self, made: PtxFunction) -> None:
         made.body = []
         depth = 0
-        scopes = _Scopes()
+        scopes = _BlockScopes()
         while True:
             char = self.skip()
             if char == "":
@@ -269,7 +269,7 @@ class _Reader:
                 continue
             label = _LABEL.match(self.text, self.at)
             if label is not None:
-                made.body.append(Instruction("", (), self.line, label=label[1]))
+                made.body.append(PtxInstruction("", (), self.line, label=label[1]))
                 self.take(label.end())
                 continue
             line = self.line
@@ -287,12 +287,12 @@ class _Reader:
                 made.body.append(scopes.renamed(_instruction(text, line)))
 
 
-def _parameters(text: str | None, line: int) -> list[Variable]:
+def _parameters(text: str | None, line: int) -> list[PtxVariable]:
     inside = (text or "").strip().removeprefix("(").removesuffix(")").strip()
     return [_variable(part.strip(), line) for part in inside.split(",") if part.strip()]
 
 
-def _variables(text: str, line: int) -> list[Variable]:
+def _variables(text: str, line: int) -> list[PtxVariable]:
     """``.reg .u32 a, b, c`` declares three."""
     if "=" in text or "," not in text:
         return [_variable(text, line)]
@@ -303,7 +303,7 @@ def _variables(text: str, line: int) -> list[Variable]:
     return [_variable(first, line), *(_variable(head + other, line) for other in others)]
 
 
-def _variable(text: str, line: int) -> Variable:
+def _variable(text: str, line: int) -> PtxVariable:
     found = _DECLARED.match(text)
     if found is None or found["type"] not in SIZES:
         raise PtxError(line, f"this is no declaration: '{text[:60]}'")
@@ -315,7 +315,7 @@ def _variable(text: str, line: int) -> Variable:
     count = None if length is None and wide == 1 else int(length or 0) * wide if length else wide
     if length == "" and found["value"]:
         count = found["value"].count(",") + 1
-    return Variable(
+    return PtxVariable(
         found["space"],
         found["type"],
         found["name"],
@@ -330,7 +330,7 @@ def _variable(text: str, line: int) -> Variable:
 _GUARD = re.compile(r"@\s*(!?)\s*([%\w$]+)\s+")
 
 
-def _instruction(text: str, line: int) -> Instruction:
+def _instruction(text: str, line: int) -> PtxInstruction:
     guard = ""
     found = _GUARD.match(text)
     if found:
@@ -339,7 +339,7 @@ def _instruction(text: str, line: int) -> Instruction:
     opcode = opcode.strip()
     if not re.fullmatch(r"[a-z][\w.:]*", opcode):
         raise PtxError(line, f"this is no instruction: '{text[:60]}'")
-    return Instruction(opcode, tuple(_operands(rest, line)), line, guard)
+    return PtxInstruction(opcode, tuple(_operands(rest, line)), line, guard)
 
 
 def _operands(text: str, line: int) -> list[str]:
@@ -374,6 +374,6 @@ def _listed(text: str) -> list[str]:
     return [part.strip() for part in text.strip("()").split(",") if part.strip()]
 
 
-def read_ptx(text: str) -> Module:
+def read_ptx(text: str) -> PtxModule:
     """The module of a text. Raises :class:`PtxError`."""
-    return _Reader(text).run()
+    return _ModuleReader(text).run()

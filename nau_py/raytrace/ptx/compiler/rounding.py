@@ -8,8 +8,8 @@ Floating-Point Arithmetic*, 2nd edition, chapters 4 and 5).
 
 from __future__ import annotations
 
-from nau_py.raytrace.ptx.compiler.function import Writer, llvm
 from nau_py.raytrace.ptx.compiler.reader import SIZES
+from nau_py.raytrace.ptx.compiler.writer import FunctionWriter, llvm
 
 MODES = ("rz", "rm", "rp")
 
@@ -23,13 +23,13 @@ _Exact = tuple[str, str]
 """A result of higher precision: the sum of two doubles, the larger one first."""
 
 
-def rounded(w: Writer, words: list[str], type_: str, how: str, values: list[str]) -> str:
+def rounded(w: FunctionWriter, words: list[str], type_: str, how: str, values: list[str]) -> str:
     """``how`` (add, sub, mul, div, sqrt, fma) of floats, by the rounding that an opcode names."""
     mode = mode_of(words)
     return directed(w, mode, type_, how, values) if mode else nearest(w, type_, how, values)
 
 
-def nearest(w: Writer, type_: str, how: str, values: list[str]) -> str:
+def nearest(w: FunctionWriter, type_: str, how: str, values: list[str]) -> str:
     t = llvm(type_)
     if how in ("sqrt", "fma"):
         listed = ", ".join(f"{t} {value}" for value in values)
@@ -37,7 +37,7 @@ def nearest(w: Writer, type_: str, how: str, values: list[str]) -> str:
     return w.value(f"f{how} {t} {values[0]}, {values[1]}")
 
 
-def directed(w: Writer, mode: str, type_: str, how: str, values: list[str]) -> str:
+def directed(w: FunctionWriter, mode: str, type_: str, how: str, values: list[str]) -> str:
     """As :func:`rounded`, by ``mode``."""
     t = llvm(type_)
     if how == "fma" and type_ == "f64":
@@ -61,7 +61,7 @@ def directed(w: Writer, mode: str, type_: str, how: str, values: list[str]) -> s
     return found
 
 
-def _zero_down(w: Writer, type_: str, found: str, terms: list[str]) -> str:
+def _zero_down(w: FunctionWriter, type_: str, found: str, terms: list[str]) -> str:
     """Of a sum that is exactly 0: rounded down it is -0, unless both terms are +0 (IEEE 754)."""
     t, bits = llvm(type_), f"i{8 * SIZES[type_]}"
     signs = [
@@ -73,11 +73,11 @@ def _zero_down(w: Writer, type_: str, found: str, terms: list[str]) -> str:
     return w.value(f"select i1 {turned}, {t} {minus}, {t} {found}")
 
 
-def _fused(w: Writer, a: str, b: str, c: str) -> str:
+def _fused(w: FunctionWriter, a: str, b: str, c: str) -> str:
     return w.value(f"call double @llvm.fma.f64(double {a}, double {b}, double {c})")
 
 
-def _sum(w: Writer, a: str, b: str) -> _Exact:
+def _sum(w: FunctionWriter, a: str, b: str) -> _Exact:
     """Knuth's TwoSum."""
     s = w.value(f"fadd double {a}, {b}")
     part = w.value(f"fsub double {s}, {a}")
@@ -87,7 +87,7 @@ def _sum(w: Writer, a: str, b: str) -> _Exact:
     return s, w.value(f"fadd double {low}, {other}")
 
 
-def _exact(w: Writer, how: str, values: list[str]) -> _Exact:
+def _exact(w: FunctionWriter, how: str, values: list[str]) -> _Exact:
     if how == "add":
         return _sum(w, values[0], values[1])
     if how == "fma":  # of float32: the product is exact
@@ -109,7 +109,7 @@ def _exact(w: Writer, how: str, values: list[str]) -> _Exact:
     return q, low
 
 
-def _sides(w: Writer, exact: _Exact, mine: str) -> tuple[str, str]:
+def _sides(w: FunctionWriter, exact: _Exact, mine: str) -> tuple[str, str]:
     """Whether the exact result lies above, and below, what was computed."""
     same = w.value(f"fcmp oeq double {exact[0]}, {mine}")
     found = []
@@ -122,7 +122,7 @@ def _sides(w: Writer, exact: _Exact, mine: str) -> tuple[str, str]:
 
 
 def _of_overflow(
-    w: Writer, how: str, values: list[str], near: str, above: str, below: str
+    w: FunctionWriter, how: str, values: list[str], near: str, above: str, below: str
 ) -> tuple[str, str]:
     """A double that overflowed is too large: there is no wider type to see that in."""
     finite = "true"
@@ -139,7 +139,7 @@ def _of_overflow(
     return w.value(f"or i1 {above}, {under}"), w.value(f"or i1 {below}, {over}")
 
 
-def stepped(w: Writer, mode: str, type_: str, near: str, above: str, below: str) -> str:
+def stepped(w: FunctionWriter, mode: str, type_: str, near: str, above: str, below: str) -> str:
     """The nearest result, or its neighbour on the side of the exact one that ``mode`` asks for."""
     t, bits = llvm(type_), f"i{8 * SIZES[type_]}"
     word = w.value(f"bitcast {t} {near} to {bits}")
@@ -158,7 +158,7 @@ def stepped(w: Writer, mode: str, type_: str, near: str, above: str, below: str)
     return w.value(f"bitcast {bits} {chosen} to {t}")
 
 
-def narrowed(w: Writer, mode: str, value: str) -> str:
+def narrowed(w: FunctionWriter, mode: str, value: str) -> str:
     """A float64 as float32."""
     near = w.value(f"fptrunc double {value} to float")
     back = w.value(f"fpext float {near} to double")
@@ -167,7 +167,9 @@ def narrowed(w: Writer, mode: str, value: str) -> str:
     return stepped(w, mode, "f32", near, above, below)
 
 
-def of_integer(w: Writer, mode: str, value: str, source: str, signed: bool, type_: str) -> str:
+def of_integer(
+    w: FunctionWriter, mode: str, value: str, source: str, signed: bool, type_: str
+) -> str:
     """An integer of LLVM's type ``source`` as a float."""
     t, sign = llvm(type_), "s" if signed else "u"
     near = w.value(f"{sign}itofp {source} {value} to {t}")

@@ -12,9 +12,9 @@ import re
 from dataclasses import dataclass, field
 
 from nau_py.raytrace.ptx.compiler.data import initial_bytes
-from nau_py.raytrace.ptx.compiler.function import FRAME, Writer
-from nau_py.raytrace.ptx.compiler.reader import Module, Variable, call_parts
-from nau_py.raytrace.ptx.runtime.frame import (
+from nau_py.raytrace.ptx.compiler.reader import PtxModule, PtxVariable, call_parts
+from nau_py.raytrace.ptx.compiler.writer import FRAME, FunctionWriter
+from nau_py.raytrace.ptx.runtime.layout import (
     IGNORE,
     LAUNCH,
     PLACES,
@@ -48,7 +48,7 @@ STACK_OVERFLOW = 0x3FC
 
 
 @dataclass(frozen=True, slots=True)
-class Declared:
+class DeclaredVariable:
     """A variable: bytes, and the semantic that binds it, empty where its name does."""
 
     kind: str
@@ -56,7 +56,7 @@ class Declared:
     semantic: str = ""
 
 
-def declared(module: Module) -> dict[str, Declared]:
+def declared(module: PtxModule) -> dict[str, DeclaredVariable]:
     """The variables of a module by name; empty for a module of OptiX 7."""
     if not is_old(module):
         return {}
@@ -73,26 +73,26 @@ def declared(module: Module) -> dict[str, Declared]:
     }
 
 
-def _declared(variable: Variable, facts: dict[str, bytes] | None) -> Declared | None:
+def _declared(variable: PtxVariable, facts: dict[str, bytes] | None) -> DeclaredVariable | None:
     if facts is not None:
         size = int.from_bytes(facts.get("typeinfo", b"")[4:8], "little") or variable.size
         semantic = facts.get("semantic", b"").split(b"\0")[0].decode("latin-1")
-        return Declared(PLAIN, size, semantic)
+        return DeclaredVariable(PLAIN, size, semantic)
     if variable.type == "texref":
-        return Declared(TEXTURE, 8)
+        return DeclaredVariable(TEXTURE, 8)
     if variable.type == "b8" and variable.length == 1 and not variable.value:
         inner = variable.name.startswith("_ZN") and "rti_internal" in variable.name
-        return None if inner else Declared(BUFFER, BUFFER_BYTES)
+        return None if inner else DeclaredVariable(BUFFER, BUFFER_BYTES)
     return None
 
 
-def is_old(module: Module) -> bool:
+def is_old(module: PtxModule) -> bool:
     """Whether a module is of OptiX 3 to 6."""
     named = any(_INTERNAL.match(variable.name) for variable in module.variables)
     return named or calls(module, "_rt_")
 
 
-def calls(module: Module, prefix: str) -> bool:
+def calls(module: PtxModule, prefix: str) -> bool:
     """Whether a module calls anything whose name begins so."""
     return any(
         call_parts(instruction.operands)[1].startswith(prefix)
@@ -103,11 +103,11 @@ def calls(module: Module, prefix: str) -> bool:
 
 
 @dataclass(slots=True)
-class Layout:
+class RecordLayout:
     """Where the variables of all modules of a pass lie: ``offsets`` in a record, ``attributes`` in
     what intersection programs tell of a hit; both by name."""
 
-    variables: dict[str, Declared] = field(default_factory=dict)
+    variables: dict[str, DeclaredVariable] = field(default_factory=dict)
     offsets: dict[str, int] = field(default_factory=dict)
     attributes: dict[str, int] = field(default_factory=dict)
     sizes: dict[str, int] = field(default_factory=dict)
@@ -115,7 +115,7 @@ class Layout:
     record_bytes: int = 0
     attribute_bytes: int = 0
 
-    def add(self, module: Module) -> list[str]:
+    def add(self, module: PtxModule) -> list[str]:
         """Take in a module's variables; what of them differs from those of others."""
         wrong = []
         for name, variable in declared(module).items():
@@ -143,7 +143,7 @@ class Layout:
                 self.record_bytes += -(-variable.size // 16) * 16
         return wrong
 
-    def bindings(self, module: Module) -> dict[str, tuple[str, int]]:
+    def bindings(self, module: PtxModule) -> dict[str, tuple[str, int]]:
         """Base and offset of each variable of a module."""
         found = {}
         for name, variable in declared(module).items():
@@ -157,7 +157,7 @@ class Layout:
         return found
 
 
-def bound(w: Writer, base: str, offset: int) -> str:
+def bound(w: FunctionWriter, base: str, offset: int) -> str:
     """The address of a variable."""
     return place(w, FRAME if base == "frame" else address(w, base), offset)
 
@@ -209,7 +209,7 @@ def known(name: str) -> bool:
     return any(short in names for names in (_TRACES, _READS, _CONSTANT, _OTHERS))
 
 
-def call(w: Writer, name: str, returns: list[str], takes: list[str]) -> None:
+def call(w: FunctionWriter, name: str, returns: list[str], takes: list[str]) -> None:
     """One call. ``returns``: registers, ``takes``: operands."""
     short = _short(name)
     if short in _TRACES:
@@ -255,7 +255,7 @@ def call(w: Writer, name: str, returns: list[str], takes: list[str]) -> None:
         w.emit(f"call void @nau.print_write(ptr {FRAME}, i32 {value}, i32 {at})")
 
 
-def _trace(w: Writer, limits: tuple[str, ...], takes: list[str]) -> None:
+def _trace(w: FunctionWriter, limits: tuple[str, ...], takes: list[str]) -> None:
     """``trace(object, origin, direction, ray type, tmin, tmax …, payload, its bytes)``."""
     names = [*list(TRACED)[:7], "offset", *limits]
     if len(takes) < len(names) + 1:
@@ -268,7 +268,7 @@ def _trace(w: Writer, limits: tuple[str, ...], takes: list[str]) -> None:
     trace(w, values, payload)
 
 
-def _element(w: Writer, returns: list[str], takes: list[str]) -> None:
+def _element(w: FunctionWriter, returns: list[str], takes: list[str]) -> None:
     """``(address) = buffer_get(buffer, dimensions, bytes, i, j, k, l)``."""
     buffer, size = w.read(takes[0], "u64"), w.read(takes[2], "u32")
     at = ", ".join(f"i64 {w.read(operand, 'u64')}" for operand in takes[3:6])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from nau_py.raytrace.ptx.compiler.function import FRAME, Writer
-from nau_py.raytrace.ptx.runtime.frame import (
+from nau_py.raytrace.ptx.compiler.writer import FRAME, FunctionWriter
+from nau_py.raytrace.ptx.runtime.layout import (
     DETAILS,
     IGNORE,
     TERMINATE,
@@ -106,7 +106,7 @@ def known(name: str) -> bool:
     )
 
 
-def call(w: Writer, name: str, returns: list[str], takes: list[str]) -> None:
+def call(w: FunctionWriter, name: str, returns: list[str], takes: list[str]) -> None:
     """One call. ``returns``: registers, ``takes``: operands."""
     short = name.removeprefix(_PREFIX)
     if short in _READS:
@@ -145,7 +145,7 @@ def call(w: Writer, name: str, returns: list[str], takes: list[str]) -> None:
         _asked(w, short, returns, takes)
 
 
-def _asked(w: Writer, short: str, returns: list[str], takes: list[str]) -> None:
+def _asked(w: FunctionWriter, short: str, returns: list[str], takes: list[str]) -> None:
     if short == "get_remaining_trace_depth":
         most, depth = launched(w, "max_depth")[0], read(w, "depth")[0]
         w.write(returns[0], w.value(f"sub i32 {most}, {depth}"), "u32")
@@ -163,7 +163,7 @@ def _asked(w: Writer, short: str, returns: list[str], takes: list[str]) -> None:
         w.write(returns[0], found, "u64")
 
 
-def _payload(w: Writer, short: str, returns: list[str], takes: list[str]) -> None:
+def _payload(w: FunctionWriter, short: str, returns: list[str], takes: list[str]) -> None:
     """``get_payload_0`` of OptiX 7.0, ``get_payload, (0)`` of later ones."""
     found = _PAYLOAD.match(short)
     number, values = (found[2], takes) if found else (takes[0], takes[1:])
@@ -176,7 +176,7 @@ def _payload(w: Writer, short: str, returns: list[str], takes: list[str]) -> Non
         w.emit(f"store i32 {w.read(values[0], 'u32')}, ptr {word}")
 
 
-def _trace(w: Writer, returns: list[str], takes: list[str], payload: list[str]) -> None:
+def _trace(w: FunctionWriter, returns: list[str], takes: list[str], payload: list[str]) -> None:
     """``(payload …) = trace_N(handle, origin, direction, tmin, tmax, time, mask, flags, SBT
     offset, SBT stride, miss index, payload …)``."""
     if len(takes) < len(TRACED):
@@ -190,7 +190,7 @@ def _trace(w: Writer, returns: list[str], takes: list[str], payload: list[str]) 
         w.write(register, w.value(f"load i32, ptr {place(w, words, 4 * index)}"), "u32")
 
 
-def _report(w: Writer, returns: list[str], takes: list[str]) -> None:
+def _report(w: FunctionWriter, returns: list[str], takes: list[str]) -> None:
     """``(taken) = report_intersection_N(distance, kind, attribute …)``."""
     distance, kind = w.read(takes[0], "f32"), w.read(takes[1], "u32")
     words = w.stack("i32", 8)
@@ -205,7 +205,7 @@ def _report(w: Writer, returns: list[str], takes: list[str]) -> None:
     w.write(returns[0], taken, "u32")
 
 
-def _vertices(w: Writer, returns: list[str], takes: list[str]) -> None:
+def _vertices(w: FunctionWriter, returns: list[str], takes: list[str]) -> None:
     """``(nine floats) = get_triangle_vertex_data(handle, primitive, SBT index, time)``."""
     primitive = w.read(takes[1], "u32") if takes else read(w, "primitive")[0]
     group = w.read(takes[2], "u32") if takes else read(w, "group")[0]

@@ -8,9 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.geometry.cuda_texture import Image
-from nau_py.raytrace.ptx.runtime.frame import RECORD_HEADER
 from nau_py.raytrace.ptx.runtime.launch import record_table, set_program
+<<<<<<< HEAD
 from nau_py.raytrace.tracing.accelerator import TriangleGeometry, build_groups
+=======
+from nau_py.raytrace.ptx.runtime.layout import RECORD_HEADER
+from nau_py.raytrace.tracing.accelerator import Triangles, build_groups
+>>>>>>> 6c70048 (Classes of compiled programs have names of their own)
 
 F32 = NDArray[np.float32]
 DATA = np.dtype(
@@ -36,7 +40,7 @@ assert DATA.itemsize == 112
 
 
 @dataclass(slots=True)
-class Group:
+class TriangleGroup:
     """The triangles of one material of one object: ``attributes`` float32 (n, 4), by Nau's names;
     ``triangles`` uint32 (m, 3)."""
 
@@ -46,7 +50,7 @@ class Group:
 
 
 @dataclass(slots=True)
-class Surface:
+class RecordMaterial:
     """What a material gives to its records."""
 
     diffuse: tuple[float, ...] = (0.0, 0.0, 0.0)
@@ -56,10 +60,10 @@ class Surface:
     image: Image | None = None
 
 
-class Scene:
+class RtScene:
     """Groups in the order of their records, with Embree's structure over them."""
 
-    def __init__(self, groups: list[Group]) -> None:
+    def __init__(self, groups: list[TriangleGroup]) -> None:
         self.groups = groups
         self.handle = 0
         self._kept: object = None
@@ -68,7 +72,7 @@ class Scene:
             self.handle, self._kept = build_groups(parts)
 
     def records(
-        self, programs: list[list[tuple[int, int]]], surfaces: list[Surface], used: list[str]
+        self, programs: list[list[tuple[int, int]]], surfaces: list[RecordMaterial], used: list[str]
     ) -> NDArray[np.uint8]:
         """The hit records: ``programs`` (closest hit, any hit) by group and ray type, addresses.
         ``used``: the vertex attributes that the pass asks for."""

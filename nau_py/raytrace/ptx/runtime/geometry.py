@@ -14,9 +14,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+<<<<<<< HEAD
 from nau_py.raytrace.ptx.runtime.launch import TYPES, Launch, bind_host, block_of, frame_of
 from nau_py.raytrace.ptx.runtime.native import Native
 from nau_py.raytrace.tracing.accelerator import CustomGeometry, TriangleGeometry, build_groups
+=======
+from nau_py.raytrace.ptx.runtime.launch import TYPES, PtxLaunch, bind_host, block_of, frame_of
+from nau_py.raytrace.ptx.runtime.native import NativeModule
+from nau_py.raytrace.tracing.accelerator import Custom, Triangles, build_groups
+>>>>>>> 6c70048 (Classes of compiled programs have names of their own)
 
 TRIANGLES, CUSTOM = "triangles", "custom"
 _PROBED = 64
@@ -29,7 +35,7 @@ F64 = NDArray[np.float64]
 
 
 @dataclass(slots=True)
-class _Asked:
+class _GeometryProbe:
     """A group's programs with a frame to run them in; ``user`` is what the runtime takes."""
 
     frame: NDArray[np.uint8]
@@ -38,8 +44,8 @@ class _Asked:
 
 
 def build_scene(
-    native: Native,
-    launch: Launch,
+    native: NativeModule,
+    launch: PtxLaunch,
     shapes: list[tuple[Any, Any]],
     records: list[NDArray[np.uint8]],
     intersect: int,
@@ -76,17 +82,17 @@ def build_scene(
 
 def _asked(
     block: NDArray[np.uint8], record: NDArray[np.uint8], intersect: int, bounds: int
-) -> _Asked:
+) -> _GeometryProbe:
     frame = frame_of(block, record)
     place = frame.ctypes.data
-    return _Asked(
+    return _GeometryProbe(
         frame, np.array([bounds, place], np.uint64), np.array([intersect, place], np.uint64)
     )
 
 
 def _standard(
-    native: Native,
-    asked: _Asked,
+    native: NativeModule,
+    asked: _GeometryProbe,
     positions: NDArray[np.float32],
     triangles: NDArray[np.uint32],
     bounds: int,
@@ -118,7 +124,9 @@ def _normals(corners: F64) -> F64:
     return np.cross(edges[:, 0], edges[:, 1])
 
 
-def _probed(native: Native, asked: _Asked, primitive: int, corners: NDArray[np.float32]) -> bool:
+def _probed(
+    native: NativeModule, asked: _GeometryProbe, primitive: int, corners: NDArray[np.float32]
+) -> bool:
     """Whether rays to a triangle's plane hit where they must, and only there."""
     wide = corners.astype(np.float64)
     normal = _normals(wide[None])[0]

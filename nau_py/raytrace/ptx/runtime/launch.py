@@ -13,8 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+<<<<<<< HEAD
 from nau_py.raytrace.kernels.geometry.cuda_texture import sampler_address
 from nau_py.raytrace.ptx.runtime.frame import (
+=======
+from nau_py.raytrace.kernels.geometry.cuda_texture import sampler
+from nau_py.raytrace.ptx.runtime.layout import (
+>>>>>>> 6c70048 (Classes of compiled programs have names of their own)
     FRAME_BYTES,
     LAUNCH,
     LAUNCH_BYTES,
@@ -22,7 +27,7 @@ from nau_py.raytrace.ptx.runtime.frame import (
     RECORD,
     RECORD_HEADER,
 )
-from nau_py.raytrace.ptx.runtime.native import Native
+from nau_py.raytrace.ptx.runtime.native import NativeModule
 from nau_py.raytrace.ptx.runtime.printing import CALLBACK, Printed, formatted
 
 TRACE_DEPTH = 20
@@ -50,13 +55,13 @@ def set_program(record: NDArray[np.uint8], kind: str, address: int) -> None:
 
 
 @dataclass(slots=True)
-class Launch:
+class PtxLaunch:
     """What a launch needs. ``hits`` and ``misses``: records (:func:`record_table`) of one width;
     ``context``: the record of ray generation and exception; ``indices``: int64, those that are
     selected, None for all of ``size`` (width, height); ``flush``: denormals are zero; ``marks``:
     takes the launch indices in work, -1 for none."""
 
-    generate: tuple[Native, int]
+    generate: tuple[NativeModule, int]
     scene: int
     hits: NDArray[np.uint8]
     misses: NDArray[np.uint8]
@@ -74,7 +79,7 @@ class Launch:
 
 
 @dataclass(slots=True)
-class Launched:
+class PtxLaunchResult:
     """What a launch did: rays by ray type; how many indices threw, the first of them and its
     code; what was printed, by launch index."""
 
@@ -85,7 +90,7 @@ class Launched:
     printed: Printed = field(default_factory=list)
 
 
-def block_of(launch: Launch, rays: NDArray[np.uint64], mark: int) -> NDArray[np.uint8]:
+def block_of(launch: PtxLaunch, rays: NDArray[np.uint64], mark: int) -> NDArray[np.uint8]:
     """The launch as programs and runtime see it (``frame.LAUNCH``)."""
     width, height = launch.size
     values = {
@@ -140,7 +145,7 @@ def frame_of(block: NDArray[np.uint8], record: NDArray[np.uint8]) -> NDArray[np.
     return frame
 
 
-def bind_host(natives: list[Native], printed: Printed) -> Any:
+def bind_host(natives: list[NativeModule], printed: Printed) -> Any:
     """Give modules the sampler and the printer. Returns what must live as long as the launch."""
     lock = threading.Lock()
 
@@ -158,17 +163,17 @@ def bind_host(natives: list[Native], printed: Printed) -> Any:
 
 
 def run_launch(
-    launch: Launch,
-    natives: list[Native],
+    launch: PtxLaunch,
+    natives: list[NativeModule],
     threads: int = 0,
     told: Callable[[int, int], None] = lambda done, total: None,
-) -> Launched:
+) -> PtxLaunchResult:
     """Run the ray generation program for every index. ``natives``: all modules that take part.
     Results do not depend on the number of threads."""
     width, height = launch.size
     total = width * height if launch.indices is None else len(launch.indices)
     marks = np.full(1, -1, np.int64) if launch.marks is None else launch.marks
-    found = Launched(np.zeros(TYPES, np.uint64))
+    found = PtxLaunchResult(np.zeros(TYPES, np.uint64))
     kept = bind_host(natives, found.printed)
     native, program = launch.generate
     run = ctypes.CFUNCTYPE(

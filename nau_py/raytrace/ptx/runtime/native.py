@@ -14,12 +14,17 @@ from typing import Any
 import llvmlite.binding as llvm
 
 from nau_py.process.files import write_bytes
+<<<<<<< HEAD
 from nau_py.raytrace.kernels.core.machine_code import cache_folder
 from nau_py.raytrace.ptx.runtime.frame import fill_in
+=======
+from nau_py.raytrace.kernels.core.jit import cache_folder
+from nau_py.raytrace.ptx.runtime.layout import fill_in
+>>>>>>> 6c70048 (Classes of compiled programs have names of their own)
 from nau_py.raytrace.tracing.accelerator import load_embree
 
 
-class NotNative(Exception):
+class NativeError(Exception):
     """LLVM does not take a text."""
 
 
@@ -42,8 +47,8 @@ def _target() -> Any:
     )
 
 
-class Native:
-    """Machine code of one module; lives as long as this object. Raises :class:`NotNative` where
+class NativeModule:
+    """Machine code of one module; lives as long as this object. Raises :class:`NativeError` where
     LLVM does not take the text."""
 
     def __init__(self, text: str) -> None:
@@ -53,7 +58,7 @@ class Native:
             module = llvm.parse_assembly(text)
             module.link_in(llvm.parse_assembly(_runtime()))
         except RuntimeError as problem:
-            raise NotNative(str(problem).strip().splitlines()[0]) from None
+            raise NativeError(str(problem).strip().splitlines()[0]) from None
         module.triple, module.data_layout = machine.triple, str(machine.target_data)
         place = _kept(text)
         known = _read(place)

@@ -7,20 +7,20 @@ from functools import partial
 from nau_py.raytrace.ptx.compiler.arithmetic import ARITHMETIC, Handler
 from nau_py.raytrace.ptx.compiler.bits import BITS
 from nau_py.raytrace.ptx.compiler.data import global_text
-from nau_py.raytrace.ptx.compiler.function import FRAME, Writer, split
 from nau_py.raytrace.ptx.compiler.integer import INTEGER
 from nau_py.raytrace.ptx.compiler.memory import MEMORY
 from nau_py.raytrace.ptx.compiler.reader import (
     FLUSHED,
-    Function,
-    Instruction,
-    Module,
     PtxError,
-    Variable,
+    PtxFunction,
+    PtxInstruction,
+    PtxModule,
+    PtxVariable,
     call_parts,
 )
+from nau_py.raytrace.ptx.compiler.writer import FRAME, FunctionWriter, split
 from nau_py.raytrace.ptx.optix import optix6, optix7
-from nau_py.raytrace.ptx.runtime.frame import unwind
+from nau_py.raytrace.ptx.runtime.layout import unwind
 
 HANDLERS: dict[str, Handler] = ARITHMETIC | BITS | INTEGER | MEMORY
 PARAMETERS = "optixLaunchParams"
@@ -51,7 +51,7 @@ declare void @nau.printf(ptr, i64, i64)
 """
 
 
-def compile_module(module: Module) -> str:
+def compile_module(module: PtxModule) -> str:
     """LLVM's text. Raises :class:`PtxError` with the line of what is not supported."""
     found, errors = compile_all(module)
     if errors:
@@ -59,13 +59,15 @@ def compile_module(module: Module) -> str:
     return found
 
 
-def compile_all(module: Module, layout: optix6.Layout | None = None) -> tuple[str, list[PtxError]]:
+def compile_all(
+    module: PtxModule, layout: optix6.RecordLayout | None = None
+) -> tuple[str, list[PtxError]]:
     """LLVM's text of every function that can be compiled, and what is wrong with the others.
     ``layout``: where variables of OptiX 6 lie; of this module alone where none is given."""
     errors: list[PtxError] = []
     try:
         if layout is None:
-            layout = optix6.Layout()
+            layout = optix6.RecordLayout()
             layout.add(module)
         places = layout.bindings(module)
     except PtxError as error:
@@ -89,17 +91,17 @@ def compile_all(module: Module, layout: optix6.Layout | None = None) -> tuple[st
     return "\n".join(parts) + "\n" + _OVERFLOWS, errors
 
 
-def _bound(places: dict[str, tuple[str, int]], w: Writer, name: str) -> str | None:
+def _bound(places: dict[str, tuple[str, int]], w: FunctionWriter, name: str) -> str | None:
     return optix6.bound(w, *places[name]) if name in places else None
 
 
 def _function(
-    module: Module,
-    function: Function,
+    module: PtxModule,
+    function: PtxFunction,
     address: dict[str, str],
     places: dict[str, tuple[str, int]],
 ) -> str:
-    w = Writer(module, function, address, partial(_bound, places))
+    w = FunctionWriter(module, function, address, partial(_bound, places))
     w.line = function.line
     takes = [f"ptr {FRAME}"]
     for number, variable in enumerate([*function.returns, *function.takes]):
@@ -128,11 +130,11 @@ def _function(
     return "\n".join([head, *entry, *w.lines, "}"])
 
 
-def _by_register(w: Writer, variable: Variable) -> None:
+def _by_register(w: FunctionWriter, variable: PtxVariable) -> None:
     raise w.fail(f"parameter '{variable.name}' in a register is not supported, .param is")
 
 
-def _guarded(w: Writer, instruction: Instruction, labels: set[str]) -> None:
+def _guarded(w: FunctionWriter, instruction: PtxInstruction, labels: set[str]) -> None:
     base, words = split(instruction)
     if not instruction.guard:
         _plain(w, base, words, instruction, labels)
@@ -153,7 +155,7 @@ def _guarded(w: Writer, instruction: Instruction, labels: set[str]) -> None:
     w.block(no)
 
 
-def _label(w: Writer, instruction: Instruction, labels: set[str]) -> str:
+def _label(w: FunctionWriter, instruction: PtxInstruction, labels: set[str]) -> str:
     name = instruction.operands[0] if instruction.operands else ""
     if name not in labels:
         raise w.fail(f"there is no label '{name}'")
@@ -161,7 +163,7 @@ def _label(w: Writer, instruction: Instruction, labels: set[str]) -> str:
 
 
 def _plain(
-    w: Writer, base: str, words: list[str], instruction: Instruction, labels: set[str]
+    w: FunctionWriter, base: str, words: list[str], instruction: PtxInstruction, labels: set[str]
 ) -> None:
     operands = instruction.operands
     if base == "bra":
@@ -181,7 +183,7 @@ def _plain(
         raise w.fail(f"instruction '{instruction.opcode}' is not supported")
 
 
-def _choose(w: Writer, operands: tuple[str, ...], labels: set[str]) -> None:
+def _choose(w: FunctionWriter, operands: tuple[str, ...], labels: set[str]) -> None:
     """``brx.idx index, list``: to one of the labels of a list."""
     name = operands[1] if len(operands) > 1 else ""
     targets = w.function.tables.get(name)
@@ -192,7 +194,7 @@ def _choose(w: Writer, operands: tuple[str, ...], labels: set[str]) -> None:
     w.jump(f'switch i32 {index}, label %"L.{targets[0]}" [{cases}]')
 
 
-def _call(w: Writer, operands: tuple[str, ...]) -> None:
+def _call(w: FunctionWriter, operands: tuple[str, ...]) -> None:
     returns, name, takes = call_parts(operands)
     if not name:
         raise w.fail("a call names no procedure")
@@ -220,14 +222,14 @@ def _call(w: Writer, operands: tuple[str, ...]) -> None:
         _enter(w, f'@"{name}"', name, [*returns, *takes])
 
 
-def _enter(w: Writer, pointer: str, name: str, operands: list[str]) -> None:
+def _enter(w: FunctionWriter, pointer: str, name: str, operands: list[str]) -> None:
     """A call with the addresses of results and arguments."""
     arguments = [f"ptr {FRAME}", *(f"ptr {_parameter(w, o, name)}" for o in operands)]
     w.emit(f"call void {pointer}({', '.join(arguments)})")
     unwind(w)
 
 
-def _parameter(w: Writer, operand: str, name: str) -> str:
+def _parameter(w: FunctionWriter, operand: str, name: str) -> str:
     found = w.place(operand)
     if found is None:
         raise w.fail(f"argument '{operand}' of '{name}' is no parameter")

@@ -9,7 +9,13 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from nau_py.raytrace.ptx.compiler.reader import SIZES, Function, Instruction, Module, call_parts
+from nau_py.raytrace.ptx.compiler.reader import (
+    SIZES,
+    PtxFunction,
+    PtxInstruction,
+    PtxModule,
+    call_parts,
+)
 
 _TRACE = re.compile(r"_optix_trace_([0-8])$")
 _PAYLOAD = re.compile(r"_optix_[gs]et_payload_([0-7])$")
@@ -19,7 +25,7 @@ _NUMBER = re.compile(r"\d+$")
 
 
 @dataclass(slots=True)
-class Uses:
+class ProgramUses:
     """Of a program with what it calls: ``record`` and ``payload``: how far it reaches, in bytes and
     in words; ``sent``: words of payload of the rays that it sends (OptiX 7); ``sent_bytes``: bytes
     (OptiX 3 to 6)."""
@@ -30,9 +36,9 @@ class Uses:
     sent_bytes: set[int] = field(default_factory=set)
 
 
-def uses_of(module: Module, function: Function) -> Uses:
+def analyse_program(module: PtxModule, function: PtxFunction) -> ProgramUses:
     """What a program and the functions that it calls use."""
-    found, seen, open_ = Uses(), set[str](), [function]
+    found, seen, open_ = ProgramUses(), set[str](), [function]
     while open_:
         current = open_.pop()
         if current.name in seen:
@@ -46,7 +52,7 @@ def uses_of(module: Module, function: Function) -> Uses:
     return found
 
 
-def _add(found: Uses, function: Function) -> None:
+def _add(found: ProgramUses, function: PtxFunction) -> None:
     body = function.body or []
     once = _written_once(body)
     numbers: dict[str, int] = {}
@@ -64,7 +70,7 @@ def _add(found: Uses, function: Function) -> None:
                 found.record = max(found.record, end)
 
 
-def _written_once(body: list[Instruction]) -> set[str]:
+def _written_once(body: list[PtxInstruction]) -> set[str]:
     counts: dict[str, int] = {}
     for instruction in body:
         first = instruction.operands[0] if instruction.operands else ""
@@ -91,7 +97,7 @@ def _follow(
 
 
 def _call(
-    found: Uses, operands: tuple[str, ...], numbers: dict[str, int], records: dict[str, int]
+    found: ProgramUses, operands: tuple[str, ...], numbers: dict[str, int], records: dict[str, int]
 ) -> None:
     returns, name, takes = call_parts(operands)
 
@@ -115,7 +121,7 @@ def _call(
             found.sent_bytes.add(size)
 
 
-def _width(instruction: Instruction) -> int:
+def _width(instruction: PtxInstruction) -> int:
     words = instruction.opcode.split(".")
     type_ = next((word for word in reversed(words) if word in SIZES), "b8")
     count = 4 if "v4" in words else 2 if "v2" in words else 1

@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 
 from nau_py.raytrace.ptx.compiler.reader import (
     SIZES,
-    Function,
-    Instruction,
-    Module,
     PtxError,
-    Variable,
+    PtxFunction,
+    PtxInstruction,
+    PtxModule,
+    PtxVariable,
 )
 
 FRAME = "%frame"
@@ -63,14 +63,14 @@ def single_text(bits: int) -> str:
 
 
 @dataclass(slots=True)
-class Writer:
+class FunctionWriter:
     """Text of one function in the making."""
 
-    module: Module
-    function: Function
+    module: PtxModule
+    function: PtxFunction
     address: dict[str, str]
     """Names of the module's variables to their LLVM names."""
-    bound: Callable[[Writer, str], str | None] = lambda writer, name: None
+    bound: Callable[[FunctionWriter, str], str | None] = lambda writer, name: None
     """The address of a variable that is not the module's own."""
     lines: list[str] = field(default_factory=list)
     head: list[str] = field(default_factory=list)
@@ -131,7 +131,7 @@ class Writer:
 
     # ------------------------------------------------------------------ registers
 
-    def declare(self, variable: Variable) -> None:
+    def declare(self, variable: PtxVariable) -> None:
         if variable.space == "reg":
             if variable.count is not None:
                 self.families[variable.name] = (variable.type, variable.count)
@@ -299,7 +299,7 @@ def _wrapped(number: int, bits: int) -> int:
     return number & ((1 << bits) - 1)
 
 
-def split(instruction: Instruction) -> tuple[str, list[str]]:
+def split(instruction: PtxInstruction) -> tuple[str, list[str]]:
     """The base of an opcode and what follows its dots."""
     base, *rest = instruction.opcode.split(".")
     return base, [part for part in rest if part]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from string import Template
 
-from nau_py.raytrace.ptx.compiler.function import FRAME, Writer, llvm
+from nau_py.raytrace.ptx.compiler.writer import FRAME, FunctionWriter, llvm
 
 Places = dict[str, tuple[int, str]]
 """Name to offset and type."""
@@ -105,28 +105,28 @@ def fill_in(text: str) -> str:
     return Template(text).substitute({k: str(v) for k, v in numbers.items()})
 
 
-def place(w: Writer, base: str, offset: int) -> str:
+def place(w: FunctionWriter, base: str, offset: int) -> str:
     return w.value(f"getelementptr i8, ptr {base}, i64 {offset}")
 
 
-def read(w: Writer, name: str) -> tuple[str, str]:
+def read(w: FunctionWriter, name: str) -> tuple[str, str]:
     """A value of the frame, and its type."""
     offset, type_ = PLACES[name]
     return w.value(f"load {llvm(type_)}, ptr {place(w, FRAME, offset)}"), type_
 
 
-def address(w: Writer, name: str) -> str:
+def address(w: FunctionWriter, name: str) -> str:
     """What an address in the frame points to."""
     return w.value(f"inttoptr i64 {read(w, name)[0]} to ptr")
 
 
-def launched(w: Writer, name: str) -> tuple[str, str]:
+def launched(w: FunctionWriter, name: str) -> tuple[str, str]:
     """A value of the launch, and its type."""
     offset, type_ = LAUNCH[name]
     return w.value(f"load {llvm(type_)}, ptr {place(w, address(w, 'launch'), offset)}"), type_
 
 
-def unwind(w: Writer) -> None:
+def unwind(w: FunctionWriter) -> None:
     """Leave the function where an exception was thrown in what it called."""
     thrown, _ = launched(w, "thrown")
     out, on = w.label("thrown"), w.label("kept")
@@ -137,7 +137,7 @@ def unwind(w: Writer) -> None:
     w.block(on)
 
 
-def leave(w: Writer, bit: int) -> None:
+def leave(w: FunctionWriter, bit: int) -> None:
     """End an any-hit program that ignores its hit or ends its ray."""
     status, _ = read(w, "status")
     value = w.value(f"or i32 {status}, {bit}")
@@ -145,7 +145,7 @@ def leave(w: Writer, bit: int) -> None:
     w.jump("ret void")
 
 
-def throw(w: Writer, code: str, details: list[str]) -> None:
+def throw(w: FunctionWriter, code: str, details: list[str]) -> None:
     """End the work at this launch index: its exception program follows."""
     launch = address(w, "launch")
     for name, value in [("code", code), *((f"detail_{i}", d) for i, d in enumerate(details))]:
@@ -154,7 +154,7 @@ def throw(w: Writer, code: str, details: list[str]) -> None:
     w.jump("ret void")
 
 
-def trace(w: Writer, values: dict[str, str], payload: str) -> None:
+def trace(w: FunctionWriter, values: dict[str, str], payload: str) -> None:
     """Send a ray. ``values``: those of :data:`TRACED`."""
     listed = ", ".join(f"{llvm(type_)} {values[name]}" for name, type_ in TRACED.items())
     w.emit(f"call void @nau.trace(ptr {FRAME}, {listed}, ptr {payload})")
