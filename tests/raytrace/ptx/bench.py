@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.raytrace.ptx.compiler.reader import SIZES, read_ptx
+from nau_py.raytrace.ptx.compiler.module import SIZES
+from nau_py.raytrace.ptx.compiler.reader import read_ptx
 from nau_py.raytrace.ptx.compiler.translate import compile_module
 from nau_py.raytrace.ptx.runtime.launch import PtxLaunch, record_table, run_launch
 from nau_py.raytrace.ptx.runtime.native import NativeModule

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from nau_py.raytrace.ptx.compiler.reader import PtxModule, read_ptx
+from nau_py.raytrace.ptx.compiler.module import PtxModule
+from nau_py.raytrace.ptx.compiler.reader import read_ptx
 from nau_py.raytrace.ptx.compiler.translate import compile_module
 from nau_py.raytrace.ptx.runtime.launch import PtxLaunch, record_table, run_launch
 from nau_py.raytrace.ptx.runtime.native import NativeModule

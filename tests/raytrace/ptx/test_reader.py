@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from nau_py.raytrace.ptx.compiler.analysis import analyse_program
-from nau_py.raytrace.ptx.compiler.reader import PtxError, read_ptx
+from nau_py.raytrace.ptx.compiler.module import PtxError
+from nau_py.raytrace.ptx.compiler.reader import read_ptx
 from nau_py.raytrace.ptx.compiler.translate import compile_all, compile_module
 from nau_py.raytrace.ptx.optix.optix6 import RecordLayout, declared
 from nau_py.raytrace.ptx.runtime.native import NativeError, NativeModule

@@ -9,13 +9,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 
-from nau_py.raytrace.ptx.compiler.reader import (
-    SIZES,
-    PtxFunction,
-    PtxInstruction,
-    PtxModule,
-    call_parts,
-)
+from nau_py.raytrace.ptx.compiler.module import SIZES, PtxFunction, PtxInstruction, PtxModule
+from nau_py.raytrace.ptx.compiler.reader import split_call
 
 _TRACE = re.compile(r"_optix_trace_([0-8])$")
 _PAYLOAD = re.compile(r"_optix_[gs]et_payload_([0-7])$")
@@ -47,7 +42,7 @@ def analyse_program(module: PtxModule, function: PtxFunction) -> ProgramUses:
         _add(found, current)
         for instruction in current.body or []:
             if instruction.opcode.startswith("call"):
-                called = module.functions.get(call_parts(instruction.operands)[1])
+                called = module.functions.get(split_call(instruction.operands)[1])
                 open_ += [called] if called is not None else []
     return found
 
@@ -99,7 +94,7 @@ def _follow(
 def _call(
     found: ProgramUses, operands: tuple[str, ...], numbers: dict[str, int], records: dict[str, int]
 ) -> None:
-    returns, name, takes = call_parts(operands)
+    returns, name, takes = split_call(operands)
 
     def number(operand: str) -> int | None:
         return int(operand) if _NUMBER.match(operand) else numbers.get(operand)

@@ -1,19 +1,20 @@
-"""Bits, conversions and moves (PTX ISA, 9.7.1.12 to 9.7.1.19, 9.7.9)."""
+"""Bit fields, conversions and moves (PTX ISA, 9.7.1.12 to 9.7.1.19, 9.7.9)."""
 
 from __future__ import annotations
 
-from nau_py.raytrace.ptx.compiler.arithmetic import Handler, type_in
-from nau_py.raytrace.ptx.compiler.reader import SIZES
-from nau_py.raytrace.ptx.compiler.rounding import mode_of, narrowed, of_integer
-from nau_py.raytrace.ptx.compiler.writer import FunctionWriter, is_float, is_signed, llvm
+from nau_py.raytrace.ptx.compiler.handler import Handler, type_in
+from nau_py.raytrace.ptx.compiler.literals import is_float, is_signed, llvm_type
+from nau_py.raytrace.ptx.compiler.module import SIZES
+from nau_py.raytrace.ptx.compiler.rounding import narrow_float, round_integer, rounding_mode
+from nau_py.raytrace.ptx.compiler.writer import FunctionWriter
 
 _ROUND = {"rni": "rint", "rzi": "trunc", "rmi": "floor", "rpi": "ceil"}
 
 
-def _count(name: str, extra: str = "") -> Handler:
+def _make_count(name: str, extra: str = "") -> Handler:
     def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
-        t = llvm(type_)
+        t = llvm_type(type_)
         value = w.value(f"call {t} @llvm.{name}.{t}({t} {w.read(operands[1], type_)}{extra})")
         if name == "bitreverse":
             w.write(operands[0], value, type_)
@@ -23,11 +24,13 @@ def _count(name: str, extra: str = "") -> Handler:
     return handle
 
 
-def bfind(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """The place of the highest bit (of signed ones, of the highest that is not the sign), or all
-    bits set where there is none."""
+def write_bfind(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Find the highest bit that is set (for signed values, that differs from the sign).
+
+    The result is its position, or all bits set where there is none.
+    """
     type_ = type_in(w, words)
-    t, bits = llvm(type_), 8 * SIZES[type_]
+    t, bits = llvm_type(type_), 8 * SIZES[type_]
     a = w.read(operands[1], type_)
     if is_signed(type_):
         a = w.value(f"xor {t} {a}, {w.value(f'ashr {t} {a}, {bits - 1}')}")
@@ -39,13 +42,13 @@ def bfind(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> Non
     w.write(operands[0], w.fit(place, "s" + type_[1:], "u32"), "u32")
 
 
-def bfe(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """A field of bits: from a place, so long; of signed ones filled up with its highest bit."""
+def write_bfe(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Extract a bit field, given by its position and length; sign-extend it for signed types."""
     type_ = type_in(w, words)
-    t, bits = llvm(type_), 8 * SIZES[type_]
+    t, bits = llvm_type(type_), 8 * SIZES[type_]
     a = w.read(operands[1], type_)
-    begin = _byte(w, operands[2])
-    length = _byte(w, operands[3])
+    begin = _read_byte(w, operands[2])
+    length = _read_byte(w, operands[3])
     wide = "i128"
     signed = is_signed(type_)
     big = w.value(f"{'sext' if signed else 'zext'} {t} {a} to {wide}")
@@ -61,14 +64,14 @@ def bfe(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], w.value(f"select i1 {none}, {t} 0, {t} {cut}"), type_)
 
 
-def bfi(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """The low bits of the first in the second, at a place, so many."""
+def write_bfi(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Insert the low bits of the first operand into the second, at a position and length."""
     type_ = type_in(w, words)
-    t, bits = llvm(type_), 8 * SIZES[type_]
+    t, bits = llvm_type(type_), 8 * SIZES[type_]
     a, b = w.read(operands[1], type_), w.read(operands[2], type_)
-    begin, length = _byte(w, operands[3]), _byte(w, operands[4])
+    begin, length = _read_byte(w, operands[3]), _read_byte(w, operands[4])
     wide = "i128"
-    start, size = (_limited(w, operand, bits, wide) for operand in (begin, length))
+    start, size = (_limit(w, operand, bits, wide) for operand in (begin, length))
     power = w.value(f"shl {wide} 1, {size}")
     ones = w.value(f"sub {wide} {power}, 1")
     mask = w.value(f"shl {wide} {ones}, {start}")
@@ -79,18 +82,19 @@ def bfi(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], w.value(f"trunc {wide} {both} to {t}"), type_)
 
 
-def _limited(w: FunctionWriter, value: str, bits: int, wide: str) -> str:
+def _limit(w: FunctionWriter, value: str, bits: int, wide: str) -> str:
+    """Clamp a value to ``bits`` and extend it to the LLVM type ``wide``."""
     least = w.value(f"call i32 @llvm.umin.i32(i32 {value}, i32 {bits})")
     return w.value(f"zext i32 {least} to {wide}")
 
 
-def _byte(w: FunctionWriter, operand: str) -> str:
-    """The low eight bits of an operand."""
+def _read_byte(w: FunctionWriter, operand: str) -> str:
+    """Read the low eight bits of an operand."""
     return w.value(f"and i32 {w.read(operand, 'u32')}, 255")
 
 
-def prmt(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """Four bytes chosen out of eight, each by four bits; the highest says to repeat the sign."""
+def write_prmt(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Choose four bytes out of eight, each by four bits. The highest bit repeats the sign."""
     if any(word in words for word in ("f4e", "b4e", "rc8", "ecl", "ecr", "rc16")):
         raise w.fail("modes of 'prmt' are not supported")
     low, high = w.read(operands[1], "u32"), w.read(operands[2], "u32")
@@ -111,14 +115,14 @@ def prmt(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None
     w.write(operands[0], result, "u32")
 
 
-def mov(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """Copies; ``{a, b}`` takes a value apart or puts it together (9.7.9.4)."""
+def write_mov(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Copy a value, split it into ``{a, b}`` or join it from them (9.7.9.4)."""
     type_ = type_in(w, words)
     to, source = w.vector(operands[0]), w.vector(operands[1])
     if len(to) == 1 and len(source) == 1:
         w.write(to[0], w.read(source[0], type_), type_)
         return
-    t, count = llvm(type_), max(len(to), len(source))
+    t, count = llvm_type(type_), max(len(to), len(source))
     bits = 8 * SIZES[type_] // count
     part = f"b{bits}"
     if len(source) > 1:
@@ -134,50 +138,52 @@ def mov(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         w.write(operand, w.value(f"trunc {t} {moved} to i{bits}"), part)
 
 
-def cvt(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """Conversions (9.7.9.21): ``cvt.rounding.to.from``."""
+def write_cvt(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Convert a number: ``cvt.rounding.to.from`` (9.7.9.21)."""
     types = [word for word in words if word in SIZES]
     if len(types) != 2:
         raise w.fail("only conversions between two of the plain types are supported")
     if "f16" in types:
-        _half(w, words, types, operands)
+        _convert_half(w, words, types, operands)
         return
     to, source = types
     value = w.read(operands[1], source)
     rounding = next((word for word in words if word in _ROUND), None)
-    mode = mode_of(words)
+    mode = rounding_mode(words)
     if is_float(source) and is_float(to):
-        made = _between_floats(w, value, source, to, rounding, mode, words)
+        made = _convert_float(w, value, source, to, rounding, mode, words)
     elif is_float(source):
-        made = _to_integer(w, value, source, to, rounding or "rzi")
+        made = _convert_to_integer(w, value, source, to, rounding or "rzi")
     elif is_float(to):
-        signed, whole = is_signed(source), llvm(source)
+        signed, whole = is_signed(source), llvm_type(source)
         if mode:
-            made = of_integer(w, mode, value, whole, signed, to)
+            made = round_integer(w, mode, value, whole, signed, to)
         else:
-            made = w.value(f"{'s' if signed else 'u'}itofp {whole} {value} to {llvm(to)}")
-        made = _clamped(w, made, to) if "sat" in words else made
+            made = w.value(f"{'s' if signed else 'u'}itofp {whole} {value} to {llvm_type(to)}")
+        made = _clamp_unit(w, made, to) if "sat" in words else made
     else:
-        made = _between_integers(w, value, source, to, "sat" in words)
+        made = _convert_integer(w, value, source, to, "sat" in words)
     w.write(operands[0], made, to)
 
 
-def _half(w: FunctionWriter, words: list[str], types: list[str], operands: tuple[str, ...]) -> None:
-    """To and from half floats, which are bits in registers of 16."""
+def _convert_half(
+    w: FunctionWriter, words: list[str], types: list[str], operands: tuple[str, ...]
+) -> None:
+    """Convert from or to half floats, which are kept as 16-bit registers."""
     to, source = types
-    if not (is_float(to) or is_float(source)) or mode_of(words):
+    if not (is_float(to) or is_float(source)) or rounding_mode(words):
         raise w.fail("half floats are converted to and from floats only, by the nearest")
     if source == "f16":
         half = w.value(f"bitcast i16 {w.read(operands[1], 'b16')} to half")
-        w.write(operands[0], w.value(f"fpext half {half} to {llvm(to)}"), to)
+        w.write(operands[0], w.value(f"fpext half {half} to {llvm_type(to)}"), to)
         return
     value = w.read(operands[1], source)
-    value = _clamped(w, value, source) if "sat" in words else value
-    half = w.value(f"fptrunc {llvm(source)} {value} to half")
+    value = _clamp_unit(w, value, source) if "sat" in words else value
+    half = w.value(f"fptrunc {llvm_type(source)} {value} to half")
     w.write(operands[0], w.value(f"bitcast half {half} to i16"), "b16")
 
 
-def _between_floats(
+def _convert_float(
     w: FunctionWriter,
     value: str,
     source: str,
@@ -187,31 +193,31 @@ def _between_floats(
     words: list[str],
 ) -> str:
     if rounding:
-        t = llvm(source)
+        t = llvm_type(source)
         value = w.value(f"call {t} @llvm.{_ROUND[rounding]}.{source}({t} {value})")
     if SIZES[to] < SIZES[source] and mode:
-        value = narrowed(w, mode, value)
+        value = narrow_float(w, mode, value)
     elif source != to:
         how = "fpext" if SIZES[to] > SIZES[source] else "fptrunc"
-        value = w.value(f"{how} {llvm(source)} {value} to {llvm(to)}")
-    return _clamped(w, value, to) if "sat" in words else value
+        value = w.value(f"{how} {llvm_type(source)} {value} to {llvm_type(to)}")
+    return _clamp_unit(w, value, to) if "sat" in words else value
 
 
-def _clamped(w: FunctionWriter, value: str, type_: str) -> str:
-    t = llvm(type_)
+def _clamp_unit(w: FunctionWriter, value: str, type_: str) -> str:
+    t = llvm_type(type_)
     low = w.value(f"call {t} @llvm.maxnum.{type_}({t} {value}, {t} 0.0)")
     return w.value(f"call {t} @llvm.minnum.{type_}({t} {low}, {t} 1.0)")
 
 
-def _to_integer(w: FunctionWriter, value: str, source: str, to: str, rounding: str) -> str:
-    """Rounded, then clamped to what the type holds; NaN gives 0."""
-    t, goal = llvm(source), llvm(to)
+def _convert_to_integer(w: FunctionWriter, value: str, source: str, to: str, rounding: str) -> str:
+    """Round a float to an integer and clamp it to the range of the type. NaN gives 0."""
+    t, goal = llvm_type(source), llvm_type(to)
     whole = w.value(f"call {t} @llvm.{_ROUND[rounding]}.{source}({t} {value})")
     sign = "s" if is_signed(to) else "u"
     return w.value(f"call {goal} @llvm.fpto{sign}i.sat.{goal}.{source}({t} {whole})")
 
 
-def _between_integers(w: FunctionWriter, value: str, source: str, to: str, saturate: bool) -> str:
+def _convert_integer(w: FunctionWriter, value: str, source: str, to: str, saturate: bool) -> str:
     have, want = 8 * SIZES[source], 8 * SIZES[to]
     if saturate and (want < have or is_signed(source) != is_signed(to)):
         raise w.fail("saturation between integers is not supported")
@@ -221,21 +227,21 @@ def _between_integers(w: FunctionWriter, value: str, source: str, to: str, satur
     return w.value(f"{how} i{have} {value} to i{want}")
 
 
-def address(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """``cvta``: all spaces are one here."""
+def write_cvta(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Copy an address: all memory spaces are one."""
     type_ = type_in(w, words)
     w.write(operands[0], w.read(operands[1], type_), type_)
 
 
 BITS: dict[str, Handler] = {
-    "popc": _count("ctpop"),
-    "clz": _count("ctlz", ", i1 false"),
-    "brev": _count("bitreverse"),
-    "bfind": bfind,
-    "bfe": bfe,
-    "bfi": bfi,
-    "prmt": prmt,
-    "mov": mov,
-    "cvt": cvt,
-    "cvta": address,
+    "popc": _make_count("ctpop"),
+    "clz": _make_count("ctlz", ", i1 false"),
+    "brev": _make_count("bitreverse"),
+    "bfind": write_bfind,
+    "bfe": write_bfe,
+    "bfi": write_bfi,
+    "prmt": write_prmt,
+    "mov": write_mov,
+    "cvt": write_cvt,
+    "cvta": write_cvta,
 }

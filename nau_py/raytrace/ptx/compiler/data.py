@@ -1,21 +1,21 @@
-"""Variables of a module outside of functions, as LLVM's globals."""
+"""Variables of a module outside of functions, as global variables of LLVM."""
 
 from __future__ import annotations
 
 import re
 
-from nau_py.raytrace.ptx.compiler.reader import SIZES, PtxError, PtxVariable
-from nau_py.raytrace.ptx.compiler.writer import WHOLE_NUMBER, integer
+from nau_py.raytrace.ptx.compiler.literals import WHOLE_NUMBER, parse_integer
+from nau_py.raytrace.ptx.compiler.module import SIZES, PtxError, PtxVariable
 
 _HEX_FLOAT = re.compile(r"0[fFdD]([0-9a-fA-F]{8}|[0-9a-fA-F]{16})$")
 _SYMBOL = re.compile(r"(?:generic\()?([A-Za-z_$%][\w$]*)\)?(?:\s*\+\s*(\d+))?$")
-Part = int | tuple[str, int]
-"""A number, or a name and what is added to its address."""
+InitialValue = int | tuple[str, int]
+"""A number, or a name and the offset from its address."""
 
 
-def _parts(variable: PtxVariable) -> list[Part]:
-    """The values of an initialiser, one an element. Raises :class:`PtxError`."""
-    found: list[Part] = []
+def _read_values(variable: PtxVariable) -> list[InitialValue]:
+    """Read the values of an initialiser, one per element. Raises :class:`PtxError`."""
+    found: list[InitialValue] = []
     for word in variable.value.replace("{", " ").replace("}", " ").split(","):
         text = word.strip()
         if not text:
@@ -25,7 +25,7 @@ def _parts(variable: PtxVariable) -> list[Part]:
         if bits:
             found.append(int(bits[1], 16))
         elif whole:
-            found.append(integer(text))
+            found.append(parse_integer(text))
         elif symbol and SIZES[variable.type] == 8:
             found.append((symbol[1], int(symbol[2] or 0)))
         else:
@@ -37,24 +37,29 @@ def _parts(variable: PtxVariable) -> list[Part]:
 
 
 def initial_bytes(variable: PtxVariable) -> bytes | None:
-    """What a variable holds at first, addresses as 0; None where the text does not say."""
+    """Return the initial bytes of a variable, addresses as 0; None without an initialiser."""
     if not variable.value:
         return None
     width = SIZES[variable.type]
-    values = (part if isinstance(part, int) else 0 for part in _parts(variable))
+    values = (part if isinstance(part, int) else 0 for part in _read_values(variable))
     return b"".join((value % (1 << 8 * width)).to_bytes(width, "little") for value in values)
 
 
 def global_text(variable: PtxVariable, known: dict[str, str]) -> str:
-    """Memory of a variable. ``known``: LLVM's names of what has an address. Raises
-    :class:`PtxError`."""
+    """Write the definition of a variable.
+
+    ``known``: LLVM's names of the variables and functions of the module. Raises
+    :class:`PtxError` for an address of another name.
+    """
     size = max(variable.size, 1)
     head = f'@"{variable.name}" = global'
     align = f"align {max(variable.align, 16)}"
-    parts = _parts(variable)
+    parts = _read_values(variable)
     if any(isinstance(part, tuple) for part in parts):
         count = max(size // 8, len(parts))
-        words = [_address(variable, part, known) for part in [*parts, *[0] * (count - len(parts))]]
+        words = [
+            _address_text(variable, part, known) for part in [*parts, *[0] * (count - len(parts))]
+        ]
         return f"{head} [{count} x i64] [{', '.join(words)}], {align}"
     data = initial_bytes(variable)
     text = "zeroinitializer"
@@ -64,7 +69,7 @@ def global_text(variable: PtxVariable, known: dict[str, str]) -> str:
     return f"{head} [{size} x i8] {text}, {align}"
 
 
-def _address(variable: PtxVariable, part: Part, known: dict[str, str]) -> str:
+def _address_text(variable: PtxVariable, part: InitialValue, known: dict[str, str]) -> str:
     if isinstance(part, int):
         return f"i64 {part % (1 << 64)}"
     name, more = part

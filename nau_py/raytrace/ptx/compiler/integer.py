@@ -1,31 +1,31 @@
-"""Integer instructions beyond plain arithmetic (PTX ISA, 9.7.1, 9.7.8, 9.7.13)."""
+"""Integer instructions beyond plain arithmetic, and atomic ones (PTX ISA, 9.7.1, 9.7.8, 9.7.13)."""
 
 from __future__ import annotations
 
-from nau_py.raytrace.ptx.compiler.arithmetic import Handler, type_in
-from nau_py.raytrace.ptx.compiler.reader import SIZES
-from nau_py.raytrace.ptx.compiler.writer import (
+from nau_py.raytrace.ptx.compiler.handler import Handler, type_in
+from nau_py.raytrace.ptx.compiler.literals import (
     WHOLE_NUMBER,
-    FunctionWriter,
-    integer,
     is_float,
     is_signed,
-    llvm,
+    llvm_type,
+    parse_integer,
 )
+from nau_py.raytrace.ptx.compiler.module import SIZES
+from nau_py.raytrace.ptx.compiler.writer import FunctionWriter
 
 
-def sad(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """The distance of two numbers, added to a third."""
+def write_sad(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Add the distance of two numbers to a third."""
     type_ = type_in(w, words)
-    t, sign = llvm(type_), "s" if is_signed(type_) else "u"
+    t, sign = llvm_type(type_), "s" if is_signed(type_) else "u"
     a, b, c = (w.read(operand, type_) for operand in operands[1:4])
     high = w.value(f"call {t} @llvm.{sign}max.{t}({t} {a}, {t} {b})")
     low = w.value(f"call {t} @llvm.{sign}min.{t}({t} {a}, {t} {b})")
     w.write(operands[0], w.value(f"add {t} {w.value(f'sub {t} {high}, {low}')}, {c}"), type_)
 
 
-def shf(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """Funnel shift of two words: the second one above the first."""
+def write_shf(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Shift two words as one of 64 bits. The second word is the high one."""
     low, high, by = (w.read(operand, "u32") for operand in operands[1:4])
     if "clamp" in words:
         by = w.value(f"call i32 @llvm.umin.i32(i32 {by}, i32 32)")
@@ -41,12 +41,12 @@ def shf(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     w.write(operands[0], w.value(f"trunc i64 {both} to i32"), "u32")
 
 
-def lop3(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """Any logic of three words, by its table of eight bits."""
+def write_lop3(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Apply any logic of three words, given by its truth table of eight bits."""
     a, b, c = (w.read(operand, "b32") for operand in operands[1:4])
     if not WHOLE_NUMBER.match(operands[4]):
         raise w.fail(f"the table of 'lop3' is no number: '{operands[4]}'")
-    table = integer(operands[4]) & 255
+    table = parse_integer(operands[4]) & 255
     inverse = [w.value(f"xor i32 {value}, -1") for value in (a, b, c)]
     result = "0"
     for index in range(8):
@@ -60,8 +60,8 @@ def lop3(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None
     w.write(operands[0], result, "b32")
 
 
-def _dot(parts: int) -> Handler:
-    """``dp4a`` and ``dp2a``: bytes times bytes, or halves times two of the bytes, and a sum."""
+def _make_dot(parts: int) -> Handler:
+    """Make the handler of ``dp4a`` (bytes times bytes) or ``dp2a`` (halves times bytes)."""
 
     def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         types = [word for word in words if word in SIZES]
@@ -69,21 +69,21 @@ def _dot(parts: int) -> Handler:
         width = 32 // parts
         begin = 16 if "hi" in words else 0
         for index in range(parts):
-            x = _field(w, a, index * width, width, is_signed(types[0]))
-            y = _field(w, b, begin + index * 8, 8, is_signed(types[-1]))
+            x = _extract_field(w, a, index * width, width, is_signed(types[0]))
+            y = _extract_field(w, b, begin + index * 8, 8, is_signed(types[-1]))
             total = w.value(f"add i32 {total}, {w.value(f'mul i32 {x}, {y}')}")
         w.write(operands[0], total, "u32")
 
     return handle
 
 
-def _field(w: FunctionWriter, word: str, at: int, bits: int, signed: bool) -> str:
+def _extract_field(w: FunctionWriter, word: str, at: int, bits: int, signed: bool) -> str:
     cut = w.value(f"trunc i32 {w.value(f'lshr i32 {word}, {at}')} to i{bits}")
     return w.value(f"{'sext' if signed else 'zext'} i{bits} {cut} to i32")
 
 
-def _24(add: bool) -> Handler:
-    """``mul24`` and ``mad24``: of the low 24 bits; the low or the high half of 48."""
+def _make_mul24(add: bool) -> Handler:
+    """Make the handler of ``mul24`` or ``mad24``: low or high 32 bits of a 24-bit product."""
 
     def handle(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
         type_ = type_in(w, words)
@@ -107,12 +107,12 @@ def _24(add: bool) -> Handler:
 _ATOMIC = {"and": "and", "or": "or", "xor": "xor", "exch": "xchg", "add": "add"}
 
 
-def atom(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """``atom d, [a], b`` and ``red [a], b``: on what other launch indices write, too."""
+def write_atom(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Write ``atom d, [a], b`` or ``red [a], b``: memory that other launch indices write, too."""
     type_ = type_in(w, words)
     keeps = len(operands) > 2 or "cas" in words
     to, rest = (operands[0], operands[1:]) if keeps else ("_", operands)
-    t, place = llvm(type_), w.pointer(rest[0])
+    t, place = llvm_type(type_), w.pointer(rest[0])
     value = w.read(rest[1], type_)
     known = ("cas", "inc", "dec", "min", "max", *_ATOMIC)
     how = next((word for word in words if word in known), "")
@@ -139,13 +139,13 @@ def atom(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None
 
 
 INTEGER: dict[str, Handler] = {
-    "sad": sad,
-    "shf": shf,
-    "lop3": lop3,
-    "dp4a": _dot(4),
-    "dp2a": _dot(2),
-    "mul24": _24(False),
-    "mad24": _24(True),
-    "atom": atom,
-    "red": atom,
+    "sad": write_sad,
+    "shf": write_shf,
+    "lop3": write_lop3,
+    "dp4a": _make_dot(4),
+    "dp2a": _make_dot(2),
+    "mul24": _make_mul24(False),
+    "mad24": _make_mul24(True),
+    "atom": write_atom,
+    "red": write_atom,
 }

@@ -1,15 +1,16 @@
-"""Loads, stores and textures (PTX ISA, 9.7.9.8 to 9.7.10). All spaces are one."""
+"""Loads, stores and textures (PTX ISA, 9.7.9.8 to 9.7.10). All memory spaces are one."""
 
 from __future__ import annotations
 
-from nau_py.raytrace.ptx.compiler.arithmetic import Handler, type_in
-from nau_py.raytrace.ptx.compiler.reader import SIZES
-from nau_py.raytrace.ptx.compiler.writer import FunctionWriter, llvm
+from nau_py.raytrace.ptx.compiler.handler import Handler, type_in
+from nau_py.raytrace.ptx.compiler.literals import llvm_type
+from nau_py.raytrace.ptx.compiler.module import SIZES
+from nau_py.raytrace.ptx.compiler.writer import FunctionWriter
 
 _TEXTURES = {"1d": 1, "2d": 2, "3d": 3}
 
 
-def load(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+def write_ld(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     pointer = w.pointer(operands[1])
     for index, target in enumerate(w.vector(operands[0])):
@@ -17,11 +18,11 @@ def load(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None
         if index:
             place = w.value(f"getelementptr i8, ptr {pointer}, i64 {index * SIZES[type_]}")
         volatile = "volatile " if "volatile" in words else ""
-        value = w.value(f"load {volatile}{llvm(type_)}, ptr {place}, align 1")
+        value = w.value(f"load {volatile}{llvm_type(type_)}, ptr {place}, align 1")
         w.write(target, value, type_)
 
 
-def store(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+def write_st(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
     type_ = type_in(w, words)
     pointer = w.pointer(operands[0])
     values = [w.read(part, type_) for part in w.vector(operands[1])]
@@ -30,12 +31,14 @@ def store(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> Non
         if index:
             place = w.value(f"getelementptr i8, ptr {pointer}, i64 {index * SIZES[type_]}")
         volatile = "volatile " if "volatile" in words else ""
-        w.emit(f"store {volatile}{llvm(type_)} {value}, ptr {place}, align 1")
+        w.emit(f"store {volatile}{llvm_type(type_)} {value}, ptr {place}, align 1")
 
 
-def texture(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """``tex.2d.v4.f32.f32 {r,g,b,a}, [handle, {x, y}]``: by the runtime's sampler. Textures have
-    one level here, so one that is asked for, or gradients, change nothing."""
+def write_tex(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Sample a texture: ``tex.2d.v4.f32.f32 {r,g,b,a}, [handle, {x, y}]``.
+
+    Textures have one level, so a level or gradients change nothing.
+    """
     if words[0] in ("base", "level", "grad"):
         words = words[1:]
     kind, coordinates = words[0], words[-1]
@@ -57,19 +60,19 @@ def texture(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> N
         w.write(target, w.value(f"load float, ptr {element}"), "f32")
 
 
-def nothing(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
-    """Hints and barriers: one thread does one launch index."""
+def skip_instruction(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) -> None:
+    """Skip a hint or barrier: one thread runs one launch index."""
 
 
 MEMORY: dict[str, Handler] = {
-    "ld": load,
-    "ldu": load,
-    "st": store,
-    "tex": texture,
-    "prefetch": nothing,
-    "prefetchu": nothing,
-    "membar": nothing,
-    "fence": nothing,
-    "bar": nothing,
-    "barrier": nothing,
+    "ld": write_ld,
+    "ldu": write_ld,
+    "st": write_st,
+    "tex": write_tex,
+    "prefetch": skip_instruction,
+    "prefetchu": skip_instruction,
+    "membar": skip_instruction,
+    "fence": skip_instruction,
+    "bar": skip_instruction,
+    "barrier": skip_instruction,
 }

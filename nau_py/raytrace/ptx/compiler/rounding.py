@@ -1,69 +1,74 @@
-"""Arithmetic that rounds towards zero, down or up (``.rz``, ``.rm``, ``.rp``; PTX ISA, 9.7.3).
+"""Rounding towards zero, down or up (``.rz``, ``.rm``, ``.rp``; PTX ISA, 9.7.3).
 
-The nearest result is moved by one unit where the exact one lies on the other side of what is asked
-for. On which side it lies, an exact error says: of sums by TwoSum, of products, quotients and roots
-by a fused multiply-add; those of float32 are taken in float64 (Muller et al., *Handbook of
-Floating-Point Arithmetic*, 2nd edition, chapters 4 and 5).
+The nearest result moves by one unit in the last place where it is on the wrong side of the exact
+result. The sign of an exact error decides: TwoSum gives it for sums, a fused multiply-add for
+products, quotients and roots. Errors of float32 are computed in float64 (Muller et al., *Handbook
+of Floating-Point Arithmetic*, 2nd edition, chapters 4 and 5).
 """
 
 from __future__ import annotations
 
-from nau_py.raytrace.ptx.compiler.reader import SIZES
-from nau_py.raytrace.ptx.compiler.writer import FunctionWriter, llvm
+from nau_py.raytrace.ptx.compiler.literals import llvm_type
+from nau_py.raytrace.ptx.compiler.module import SIZES
+from nau_py.raytrace.ptx.compiler.writer import FunctionWriter
 
 MODES = ("rz", "rm", "rp")
 
 
-def mode_of(words: list[str]) -> str:
-    """The direction that an opcode asks for; empty for the nearest."""
+def rounding_mode(words: list[str]) -> str:
+    """Return the rounding direction of an opcode; empty for the nearest."""
     return next((word for word in words if word in MODES), "")
 
 
 _Exact = tuple[str, str]
-"""A result of higher precision: the sum of two doubles, the larger one first."""
+"""A result of higher precision: a sum of two doubles, the larger one first."""
 
 
-def rounded(w: FunctionWriter, words: list[str], type_: str, how: str, values: list[str]) -> str:
-    """``how`` (add, sub, mul, div, sqrt, fma) of floats, by the rounding that an opcode names."""
-    mode = mode_of(words)
-    return directed(w, mode, type_, how, values) if mode else nearest(w, type_, how, values)
+def round_result(
+    w: FunctionWriter, words: list[str], type_: str, how: str, values: list[str]
+) -> str:
+    """Compute ``how`` (add, sub, mul, div, sqrt, fma) with the rounding that an opcode names."""
+    mode = rounding_mode(words)
+    if mode:
+        return _round_directed(w, mode, type_, how, values)
+    return _round_nearest(w, type_, how, values)
 
 
-def nearest(w: FunctionWriter, type_: str, how: str, values: list[str]) -> str:
-    t = llvm(type_)
+def _round_nearest(w: FunctionWriter, type_: str, how: str, values: list[str]) -> str:
+    t = llvm_type(type_)
     if how in ("sqrt", "fma"):
         listed = ", ".join(f"{t} {value}" for value in values)
         return w.value(f"call {t} @llvm.{how}.{type_}({listed})")
     return w.value(f"f{how} {t} {values[0]}, {values[1]}")
 
 
-def directed(w: FunctionWriter, mode: str, type_: str, how: str, values: list[str]) -> str:
-    """As :func:`rounded`, by ``mode``."""
-    t = llvm(type_)
+def _round_directed(w: FunctionWriter, mode: str, type_: str, how: str, values: list[str]) -> str:
+    """Compute ``how`` and round in the direction ``mode``."""
+    t = llvm_type(type_)
     if how == "fma" and type_ == "f64":
         raise w.fail("a fused multiply-add of doubles rounds to the nearest only")
     if how == "sub":
         values = [values[0], w.value(f"fneg {t} {values[1]}")]
         how = "add"
-    near = nearest(w, type_, how, values)
+    near = _round_nearest(w, type_, how, values)
     wide = values
     if type_ == "f32":
         wide = [w.value(f"fpext float {value} to double") for value in values]
-    exact = _exact(w, how, wide)
+    exact = _compute_exact(w, how, wide)
     mine = near if type_ == "f64" else w.value(f"fpext float {near} to double")
-    above, below = _sides(w, exact, mine)
+    above, below = _compare_exact(w, exact, mine)
     if type_ == "f64":
-        above, below = _of_overflow(w, how, values, near, above, below)
-    found = stepped(w, mode, type_, near, above, below)
+        above, below = _correct_overflow(w, how, values, near, above, below)
+    found = step_result(w, mode, type_, near, above, below)
     if mode == "rm" and how in ("add", "fma"):
         terms = wide if how == "add" else [w.value(f"fmul double {wide[0]}, {wide[1]}"), wide[2]]
-        found = _zero_down(w, type_, found, terms)
+        found = _negate_zero(w, type_, found, terms)
     return found
 
 
-def _zero_down(w: FunctionWriter, type_: str, found: str, terms: list[str]) -> str:
-    """Of a sum that is exactly 0: rounded down it is -0, unless both terms are +0 (IEEE 754)."""
-    t, bits = llvm(type_), f"i{8 * SIZES[type_]}"
+def _negate_zero(w: FunctionWriter, type_: str, found: str, terms: list[str]) -> str:
+    """Return -0 for a sum of exactly 0 rounded down, unless both terms are +0 (IEEE 754, 6.3)."""
+    t, bits = llvm_type(type_), f"i{8 * SIZES[type_]}"
     signs = [
         w.value(f"icmp slt i64 {w.value(f'bitcast double {term} to i64')}, 0") for term in terms
     ]
@@ -78,7 +83,7 @@ def _fused(w: FunctionWriter, a: str, b: str, c: str) -> str:
 
 
 def _sum(w: FunctionWriter, a: str, b: str) -> _Exact:
-    """Knuth's TwoSum."""
+    """Add two doubles without an error (Knuth's TwoSum)."""
     s = w.value(f"fadd double {a}, {b}")
     part = w.value(f"fsub double {s}, {a}")
     rest = w.value(f"fsub double {s}, {part}")
@@ -87,10 +92,11 @@ def _sum(w: FunctionWriter, a: str, b: str) -> _Exact:
     return s, w.value(f"fadd double {low}, {other}")
 
 
-def _exact(w: FunctionWriter, how: str, values: list[str]) -> _Exact:
+def _compute_exact(w: FunctionWriter, how: str, values: list[str]) -> _Exact:
+    """Compute ``how`` of doubles with its error."""
     if how == "add":
         return _sum(w, values[0], values[1])
-    if how == "fma":  # of float32: the product is exact
+    if how == "fma":  # the product of two float32 is exact
         return _sum(w, w.value(f"fmul double {values[0]}, {values[1]}"), values[2])
     if how == "mul":
         p = w.value(f"fmul double {values[0]}, {values[1]}")
@@ -109,8 +115,8 @@ def _exact(w: FunctionWriter, how: str, values: list[str]) -> _Exact:
     return q, low
 
 
-def _sides(w: FunctionWriter, exact: _Exact, mine: str) -> tuple[str, str]:
-    """Whether the exact result lies above, and below, what was computed."""
+def _compare_exact(w: FunctionWriter, exact: _Exact, mine: str) -> tuple[str, str]:
+    """Compare the exact result with ``mine``: two ``i1``, for above and below."""
     same = w.value(f"fcmp oeq double {exact[0]}, {mine}")
     found = []
     for sign in ("ogt", "olt"):
@@ -121,16 +127,16 @@ def _sides(w: FunctionWriter, exact: _Exact, mine: str) -> tuple[str, str]:
     return found[0], found[1]
 
 
-def _of_overflow(
+def _correct_overflow(
     w: FunctionWriter, how: str, values: list[str], near: str, above: str, below: str
 ) -> tuple[str, str]:
-    """A double that overflowed is too large: there is no wider type to see that in."""
+    """Treat a double that overflowed as too large: no wider type shows its error."""
     finite = "true"
     for value in values:
         size = w.value(f"call double @llvm.fabs.f64(double {value})")
         test = w.value(f"fcmp olt double {size}, 0x7FF0000000000000")
         finite = w.value(f"and i1 {finite}, {test}")
-    if how == "div":  # by 0 it is infinite
+    if how == "div":  # the exact quotient by 0 is infinite
         some = w.value(f"fcmp one double {values[1]}, 0.0")
         finite = w.value(f"and i1 {finite}, {some}")
     up = w.value(f"fcmp oeq double {near}, 0x7FF0000000000000")
@@ -139,9 +145,12 @@ def _of_overflow(
     return w.value(f"or i1 {above}, {under}"), w.value(f"or i1 {below}, {over}")
 
 
-def stepped(w: FunctionWriter, mode: str, type_: str, near: str, above: str, below: str) -> str:
-    """The nearest result, or its neighbour on the side of the exact one that ``mode`` asks for."""
-    t, bits = llvm(type_), f"i{8 * SIZES[type_]}"
+def step_result(w: FunctionWriter, mode: str, type_: str, near: str, above: str, below: str) -> str:
+    """Return the nearest result, or its neighbour in the direction of ``mode`` if that is due.
+
+    ``above``, ``below``: ``i1``, the exact result is above or below ``near``.
+    """
+    t, bits = llvm_type(type_), f"i{8 * SIZES[type_]}"
     word = w.value(f"bitcast {t} {near} to {bits}")
     negative = w.value(f"icmp slt {bits} {word}, 0")
     more, less = w.value(f"add {bits} {word}, 1"), w.value(f"sub {bits} {word}, 1")
@@ -158,23 +167,23 @@ def stepped(w: FunctionWriter, mode: str, type_: str, near: str, above: str, bel
     return w.value(f"bitcast {bits} {chosen} to {t}")
 
 
-def narrowed(w: FunctionWriter, mode: str, value: str) -> str:
-    """A float64 as float32."""
+def narrow_float(w: FunctionWriter, mode: str, value: str) -> str:
+    """Round a float64 to float32."""
     near = w.value(f"fptrunc double {value} to float")
     back = w.value(f"fpext float {near} to double")
     above = w.value(f"fcmp ogt double {value}, {back}")
     below = w.value(f"fcmp olt double {value}, {back}")
-    return stepped(w, mode, "f32", near, above, below)
+    return step_result(w, mode, "f32", near, above, below)
 
 
-def of_integer(
+def round_integer(
     w: FunctionWriter, mode: str, value: str, source: str, signed: bool, type_: str
 ) -> str:
-    """An integer of LLVM's type ``source`` as a float."""
-    t, sign = llvm(type_), "s" if signed else "u"
+    """Round an integer of LLVM's type ``source`` to a float."""
+    t, sign = llvm_type(type_), "s" if signed else "u"
     near = w.value(f"{sign}itofp {source} {value} to {t}")
     back = w.value(f"call i128 @llvm.fptosi.sat.i128.{type_}({t} {near})")
     wide = w.value(f"{'s' if signed else 'z'}ext {source} {value} to i128")
     above = w.value(f"icmp sgt i128 {wide}, {back}")
     below = w.value(f"icmp slt i128 {wide}, {back}")
-    return stepped(w, mode, type_, near, above, below)
+    return step_result(w, mode, type_, near, above, below)

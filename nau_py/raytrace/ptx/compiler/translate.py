@@ -4,25 +4,27 @@ from __future__ import annotations
 
 from functools import partial
 
-from nau_py.raytrace.ptx.compiler.arithmetic import ARITHMETIC, Handler
+from nau_py.raytrace.ptx.compiler.arithmetic import ARITHMETIC
 from nau_py.raytrace.ptx.compiler.bits import BITS
 from nau_py.raytrace.ptx.compiler.data import global_text
+from nau_py.raytrace.ptx.compiler.handler import Handler
 from nau_py.raytrace.ptx.compiler.integer import INTEGER
+from nau_py.raytrace.ptx.compiler.logic import LOGIC
 from nau_py.raytrace.ptx.compiler.memory import MEMORY
-from nau_py.raytrace.ptx.compiler.reader import (
+from nau_py.raytrace.ptx.compiler.module import (
     FLUSHED,
     PtxError,
     PtxFunction,
     PtxInstruction,
     PtxModule,
     PtxVariable,
-    call_parts,
 )
-from nau_py.raytrace.ptx.compiler.writer import FRAME, FunctionWriter, split
+from nau_py.raytrace.ptx.compiler.reader import split_call
+from nau_py.raytrace.ptx.compiler.writer import FRAME, FunctionWriter, split_opcode
 from nau_py.raytrace.ptx.optix import optix6, optix7
 from nau_py.raytrace.ptx.runtime.layout import unwind
 
-HANDLERS: dict[str, Handler] = ARITHMETIC | BITS | INTEGER | MEMORY
+HANDLERS: dict[str, Handler] = ARITHMETIC | LOGIC | BITS | INTEGER | MEMORY
 PARAMETERS = "optixLaunchParams"
 """The variable that a launch fills."""
 CALLABLE = ("__direct_callable__", "__continuation_callable__")
@@ -135,7 +137,7 @@ def _by_register(w: FunctionWriter, variable: PtxVariable) -> None:
 
 
 def _guarded(w: FunctionWriter, instruction: PtxInstruction, labels: set[str]) -> None:
-    base, words = split(instruction)
+    base, words = split_opcode(instruction)
     if not instruction.guard:
         _plain(w, base, words, instruction, labels)
         return
@@ -195,7 +197,7 @@ def _choose(w: FunctionWriter, operands: tuple[str, ...], labels: set[str]) -> N
 
 
 def _call(w: FunctionWriter, operands: tuple[str, ...]) -> None:
-    returns, name, takes = call_parts(operands)
+    returns, name, takes = split_call(operands)
     if not name:
         raise w.fail("a call names no procedure")
     for interface in (optix7, optix6):

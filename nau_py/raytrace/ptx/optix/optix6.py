@@ -12,7 +12,8 @@ import re
 from dataclasses import dataclass, field
 
 from nau_py.raytrace.ptx.compiler.data import initial_bytes
-from nau_py.raytrace.ptx.compiler.reader import PtxModule, PtxVariable, call_parts
+from nau_py.raytrace.ptx.compiler.module import PtxModule, PtxVariable
+from nau_py.raytrace.ptx.compiler.reader import split_call
 from nau_py.raytrace.ptx.compiler.writer import FRAME, FunctionWriter
 from nau_py.raytrace.ptx.runtime.layout import (
     IGNORE,
@@ -95,7 +96,7 @@ def is_old(module: PtxModule) -> bool:
 def calls(module: PtxModule, prefix: str) -> bool:
     """Whether a module calls anything whose name begins so."""
     return any(
-        call_parts(instruction.operands)[1].startswith(prefix)
+        split_call(instruction.operands)[1].startswith(prefix)
         for function in module.functions.values()
         for instruction in function.body or []
         if instruction.opcode.startswith("call")

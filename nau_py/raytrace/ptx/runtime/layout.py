@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from string import Template
 
-from nau_py.raytrace.ptx.compiler.writer import FRAME, FunctionWriter, llvm
+from nau_py.raytrace.ptx.compiler.literals import llvm_type
+from nau_py.raytrace.ptx.compiler.writer import FRAME, FunctionWriter
 
 Places = dict[str, tuple[int, str]]
 """Name to offset and type."""
@@ -112,7 +113,7 @@ def place(w: FunctionWriter, base: str, offset: int) -> str:
 def read(w: FunctionWriter, name: str) -> tuple[str, str]:
     """A value of the frame, and its type."""
     offset, type_ = PLACES[name]
-    return w.value(f"load {llvm(type_)}, ptr {place(w, FRAME, offset)}"), type_
+    return w.value(f"load {llvm_type(type_)}, ptr {place(w, FRAME, offset)}"), type_
 
 
 def address(w: FunctionWriter, name: str) -> str:
@@ -123,7 +124,7 @@ def address(w: FunctionWriter, name: str) -> str:
 def launched(w: FunctionWriter, name: str) -> tuple[str, str]:
     """A value of the launch, and its type."""
     offset, type_ = LAUNCH[name]
-    return w.value(f"load {llvm(type_)}, ptr {place(w, address(w, 'launch'), offset)}"), type_
+    return w.value(f"load {llvm_type(type_)}, ptr {place(w, address(w, 'launch'), offset)}"), type_
 
 
 def unwind(w: FunctionWriter) -> None:
@@ -156,7 +157,7 @@ def throw(w: FunctionWriter, code: str, details: list[str]) -> None:
 
 def trace(w: FunctionWriter, values: dict[str, str], payload: str) -> None:
     """Send a ray. ``values``: those of :data:`TRACED`."""
-    listed = ", ".join(f"{llvm(type_)} {values[name]}" for name, type_ in TRACED.items())
+    listed = ", ".join(f"{llvm_type(type_)} {values[name]}" for name, type_ in TRACED.items())
     w.emit(f"call void @nau.trace(ptr {FRAME}, {listed}, ptr {payload})")
     unwind(w)
 
