@@ -8,7 +8,7 @@ import numpy as np
 
 from nau_py.raytrace.ptx.compiler.module import SIZES
 from nau_py.raytrace.ptx.compiler.reader import read_ptx
-from nau_py.raytrace.ptx.compiler.translate import compile_module
+from nau_py.raytrace.ptx.optix.compile import compile_module
 from nau_py.raytrace.ptx.runtime.launch import PtxLaunch, record_table, run_launch
 from nau_py.raytrace.ptx.runtime.native import NativeModule
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from nau_py.raytrace.ptx.compiler.reader import read_ptx
-from nau_py.raytrace.ptx.compiler.translate import compile_module
+from nau_py.raytrace.ptx.optix.compile import compile_module
 from nau_py.raytrace.ptx.optix.records import DATA, RecordMaterial, RtScene, TriangleGroup
 from nau_py.raytrace.ptx.runtime.launch import (
     TYPES,

@@ -11,8 +11,8 @@ import pytest
 from nau_py.raytrace.ptx.compiler.analysis import analyse_program
 from nau_py.raytrace.ptx.compiler.module import PtxError
 from nau_py.raytrace.ptx.compiler.reader import read_ptx
-from nau_py.raytrace.ptx.compiler.translate import compile_all, compile_module
-from nau_py.raytrace.ptx.optix.optix6 import RecordLayout, declared
+from nau_py.raytrace.ptx.optix.compile import compile_all, compile_module
+from nau_py.raytrace.ptx.optix.variables import RecordLayout, declared_variables
 from nau_py.raytrace.ptx.runtime.native import NativeError, NativeModule
 from tests.raytrace.ptx.bench import HEAD, source
 
@@ -170,8 +170,8 @@ def test_machine_code_is_kept_and_checked(tmp_path: Path, monkeypatch: pytest.Mo
 def test_only_old_modules_have_bound_variables() -> None:
     """A byte of memory of its own looks like a buffer of OptiX 6; of OptiX 7 it is what it is."""
     byte = ".global .align 1 .b8 flag[1];\n"
-    assert declared(read_ptx(ROOM.replace(HEAD_END, HEAD_END + byte))) == {}
-    old = declared(read_ptx((DATA / "old.ptx").read_text() + byte))
+    assert declared_variables(read_ptx(ROOM.replace(HEAD_END, HEAD_END + byte))) == {}
+    old = declared_variables(read_ptx((DATA / "old.ptx").read_text() + byte))
     assert (old["flag"].kind, old["diffuse"].size, old["told"].semantic) == (
         "buffer",
         16,
@@ -184,6 +184,6 @@ def test_attributes_of_all_files_have_one_size() -> None:
     name = "_ZN21rti_internal_typeinfo4toldE[8] = {82, 97, 121, 0, "
     assert f"{name}16" in text
     layout = RecordLayout()
-    assert layout.add(read_ptx(text)) == []
-    (said,) = layout.add(read_ptx(text.replace(f"{name}16", f"{name}8")))
+    assert layout.add_module(read_ptx(text)) == []
+    (said,) = layout.add_module(read_ptx(text.replace(f"{name}16", f"{name}8")))
     assert said == "attribute 'told' has 8 bytes, elsewhere in the pass 16"

@@ -1,4 +1,4 @@
-"""What a compiled ray program file exports, read from its text: nothing is executed.
+"""Entry points of a compiled program file, read from its text. Nothing is executed.
 
 NVIDIA's *PTX ISA*, section 11.6: entry points are ``.visible .entry NAME(``.
 """
@@ -21,8 +21,11 @@ _KINDS = {
 }
 
 
-def exports(path: Path) -> list[str] | None:
-    """Names of the entry points in file order, as C++ spells them; None: it cannot be read."""
+def read_exports(path: Path) -> list[str] | None:
+    """Return the names of the entry points in file order, as C++ spells them.
+
+    None where the file cannot be read.
+    """
     try:
         data = path.read_bytes()
     except OSError:
@@ -30,7 +33,6 @@ def exports(path: Path) -> list[str] | None:
     return [plain_name(found.decode()) for found in _ENTRY.findall(data)]
 
 
-def kind_of(name: str) -> str:
-    """The kind that OptiX 7 writes into a name, as in ``__anyhit__shadow``; empty where it has
-    none."""
+def program_kind(name: str) -> str:
+    """Return the kind that OptiX 7 puts into a name, as in ``__anyhit__shadow``; else empty."""
     return _KINDS.get(name.split("__")[1], "") if name.startswith("__") else ""

@@ -21,10 +21,10 @@ from nau_py.raytrace.kernels.geometry.cuda_texture import sampler
 from nau_py.raytrace.ptx.runtime.layout import (
 >>>>>>> 6c70048 (Classes of compiled programs have names of their own)
     FRAME_BYTES,
-    LAUNCH,
+    FRAME_FIELDS,
     LAUNCH_BYTES,
-    PLACES,
-    RECORD,
+    LAUNCH_FIELDS,
+    RECORD_FIELDS,
     RECORD_HEADER,
 )
 from nau_py.raytrace.ptx.runtime.native import NativeModule
@@ -50,7 +50,7 @@ def record_table(count: int, data_bytes: int) -> NDArray[np.uint8]:
 
 def set_program(record: NDArray[np.uint8], kind: str, address: int) -> None:
     """Write the address of a program into a record. ``kind``: closest, any, intersect."""
-    at = RECORD[kind][0]
+    at = RECORD_FIELDS[kind][0]
     record[at : at + 8] = np.frombuffer(np.uint64(address).tobytes(), np.uint8)
 
 
@@ -91,7 +91,7 @@ class PtxLaunchResult:
 
 
 def block_of(launch: PtxLaunch, rays: NDArray[np.uint64], mark: int) -> NDArray[np.uint8]:
-    """The launch as programs and runtime see it (``frame.LAUNCH``)."""
+    """The launch as programs and runtime see it (``frame.LAUNCH_FIELDS``)."""
     width, height = launch.size
     values = {
         "scene": launch.scene,
@@ -123,13 +123,13 @@ def block_of(launch: PtxLaunch, rays: NDArray[np.uint64], mark: int) -> NDArray[
 
 
 def put(block: NDArray[np.uint8], name: str, value: int) -> None:
-    offset, type_ = LAUNCH[name]
+    offset, type_ = LAUNCH_FIELDS[name]
     data = (np.uint64 if type_ == "u64" else np.uint32)(value).tobytes()
     block[offset : offset + len(data)] = np.frombuffer(data, np.uint8)
 
 
 def got(block: NDArray[np.uint8], name: str) -> int:
-    offset, type_ = LAUNCH[name]
+    offset, type_ = LAUNCH_FIELDS[name]
     return int.from_bytes(block[offset : offset + (8 if type_ == "u64" else 4)].tobytes(), "little")
 
 
@@ -140,7 +140,7 @@ def frame_of(block: NDArray[np.uint8], record: NDArray[np.uint8]) -> NDArray[np.
         ("launch", block.ctypes.data),
         ("record", record.ctypes.data + RECORD_HEADER),
     ):
-        at = PLACES[name][0]
+        at = FRAME_FIELDS[name][0]
         frame[at : at + 8] = np.frombuffer(np.uint64(value).tobytes(), np.uint8)
     return frame
 
