@@ -28,20 +28,29 @@ ARROWS = {
     "model": set(),
     "formats": {"model"},
     "graph": {"model"},
-    "rules": {"model", "graph", "raytrace/programs", "raytrace/ptx"},
+    "rules": {"model", "graph", "raytrace/programs", "raytrace/ptx/compiler"},
     "scene": {"model"},
     "raster": {"scene", "model"},
     "raytrace/selection": {"scene", "model"},
     "raytrace/programs": {"raytrace/kernels", "model"},
     "raytrace/kernels": set(),
     "raytrace/tracing": {"raytrace/kernels", "raytrace/programs", "scene", "model"},
-    "raytrace/ptx": {"raytrace/kernels", "raytrace/programs", "raytrace/tracing"},
+    "raytrace/ptx/runtime": {"raytrace/kernels", "raytrace/tracing"},
+    "raytrace/ptx/compiler": {"raytrace/ptx/runtime", "raytrace/programs"},
+    "raytrace/ptx/optix": {
+        "raytrace/ptx/compiler",
+        "raytrace/ptx/runtime",
+        "raytrace/kernels",
+        "raytrace/tracing",
+    },
     "effects": {"model", "raytrace/programs"},
     "passes": {
         "raster",
         "raytrace/kernels",
         "raytrace/programs",
-        "raytrace/ptx",
+        "raytrace/ptx/compiler",
+        "raytrace/ptx/optix",
+        "raytrace/ptx/runtime",
         "raytrace/selection",
         "raytrace/tracing",
         "graph",
@@ -106,7 +115,12 @@ without it; ``run`` needs ``rules``, as a wrong project must not run."""
 
 
 def room(parts: list[str]) -> str:
-    """The room of a module, below ``nau_py``: the folders of ``raytrace`` are rooms each."""
+    """Return the room of a module below ``nau_py``.
+
+    The folders of ``raytrace`` and those of ``raytrace/ptx`` are rooms each.
+    """
+    if parts[:2] == ["raytrace", "ptx"] and len(parts) > 2:
+        return f"raytrace/ptx/{parts[2]}"
     if parts[0] == "raytrace" and len(parts) > 1:
         return f"raytrace/{parts[1]}"
     return parts[0]
@@ -149,7 +163,7 @@ def test_imports_point_one_way(name: str) -> None:
 
 def test_every_room_has_its_arrows() -> None:
     rooms = {p.parent.relative_to(PACKAGE) for p in PACKAGE.rglob("__init__.py")}
-    names = {room(list(p.parts)) for p in rooms if p.parts} - {"raytrace"}
+    names = {room(list(p.parts)) for p in rooms if p.parts} - {"raytrace", "raytrace/ptx"}
     assert names == set(ARROWS)
 
 

@@ -12,7 +12,7 @@ from nau_py.model.raytrace import RaytracePass
 from nau_py.process.paths import resolve
 from nau_py.raytrace.programs.source import launches_ptx, stand_in
 from nau_py.raytrace.programs.used import UsedProgram, is_compiled, used_programs
-from nau_py.raytrace.ptx.exports import exports, kind_of
+from nau_py.raytrace.ptx.compiler.exports import program_kind, read_exports
 from nau_py.rules.ray_programs import T004, T005
 from nau_py.rules.raytrace import raytrace_passes
 from nau_py.rules.registry import LintContext, check
@@ -119,7 +119,7 @@ def check_compiled_programs(context: LintContext) -> Iterator[Diagnostic]:
             if file and used.program.proc and is_compiled(used.program):
                 by_file.setdefault(file, []).append(used)
         for file, listed in by_file.items():
-            known = exports(resolve(folder, file).best)
+            known = read_exports(resolve(folder, file).best)
             launched = launches_ptx(pass_, folder)
             if known and (launched or stand_in(folder, file) is None):
                 yield from _exports(pass_, file, known, listed, launched)
@@ -145,7 +145,7 @@ def _exports(
     if launched:
         return
     exported = [
-        f"{name} ({'; '.join(used) or f'not used {kind_of(name)}'.rstrip()})"
+        f"{name} ({'; '.join(used) or f'not used {program_kind(name)}'.rstrip()})"
         for name, used in roles.items()
     ]
     yield T005.at(

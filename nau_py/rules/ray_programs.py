@@ -16,7 +16,7 @@ from nau_py.process.paths import resolve, similar
 from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
 from nau_py.raytrace.programs.source import launches_ptx, stand_in, strip_decoration
 from nau_py.raytrace.programs.used import UsedProgram, used_programs
-from nau_py.raytrace.ptx.exports import exports
+from nau_py.raytrace.ptx.compiler.exports import read_exports
 from nau_py.rules.raytrace import raytrace_passes
 from nau_py.rules.registry import LintContext, check
 
@@ -121,7 +121,7 @@ def _missing_file(project: Project, program: Program, label: str) -> Iterator[Di
         near = similar(written)
         hint = f" (did you mean {format_names(near)}?)" if near else ""
         yield T003.at(where, f"{label}: program file '{file}' does not exist{hint}")
-    elif not exports(written.best):  # else one finding lists its exports
+    elif not read_exports(written.best):  # else one finding lists its exports
         sibling = written.path.with_suffix(".py").name
         yield T005.at(
             where,

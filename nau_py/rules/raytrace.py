@@ -10,20 +10,9 @@ from nau_py.diagnostics.suggest import format_names, suggest_fix, suggest_name
 from nau_py.graph.dependencies import find_dependencies
 from nau_py.graph.resource import Resource
 from nau_py.model.linked import Project
-<<<<<<< HEAD
 from nau_py.model.raytrace import RaytracePass
 from nau_py.raytrace.programs.source import launches_ptx
 from nau_py.rules.registry import LintContext, check
-=======
-from nau_py.model.pass_classes import RAYTRACE_CLASSES
-from nau_py.model.raytrace import BUILTIN, Program, RaytracePass
-from nau_py.plugins import PREFIX, program_files
-from nau_py.process.paths import resolve, similar
-from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS, EXCEPTION, RAY_GENERATION
-from nau_py.raytrace.programs.source import COMPILED, launches_ptx, stand_in, strip_decoration
-from nau_py.raytrace.ptx.compiler.exports import exports, kind_of
-from nau_py.rules.rule import ERROR, WARNING, Facts, check, rule
->>>>>>> 6c70048 (Classes of compiled programs have names of their own)
 
 T001 = rule(
     "T001",

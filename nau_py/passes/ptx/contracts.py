@@ -16,9 +16,9 @@ from nau_py.passes.ptx.variables import mentioned, value_bytes
 from nau_py.process.paths import resolve as resolve_path
 from nau_py.raytrace.programs.description import MISS
 from nau_py.raytrace.programs.used import used_programs
-from nau_py.raytrace.ptx.compiler.reader import PtxModule, PtxError
 from nau_py.raytrace.ptx.compiler.analysis import ProgramUses, analyse_program
-from nau_py.raytrace.ptx.optix.optix6 import declared, is_old
+from nau_py.raytrace.ptx.compiler.module import PtxError, PtxModule
+from nau_py.raytrace.ptx.optix.variables import declared_variables, uses_variables
 
 HIT_RECORD, OTHER_RECORD = 112, 16
 """Bytes of the data in a record of hits, and of ray generation and misses."""
@@ -41,7 +41,7 @@ def contract_faults(
             "samples",
         )
     used = list(_used(project.folder, pass_, modules))
-    if any(isinstance(m, PtxModule) and is_old(m) for m in modules.values()):
+    if any(isinstance(m, PtxModule) and uses_variables(m) for m in modules.values()):
         yield from _old_payloads(pass_, used)
         for kind in GEOMETRY_KINDS:
             if not any(program.type == kind for program in pass_.rtGeometryProgram):
@@ -115,7 +115,7 @@ def _old_payloads(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]
     most = max((size for _, _, uses in used for size in uses.sent_bytes), default=0)
     for program, module, _ in used if most else []:
         try:
-            names = declared(module)
+            names = declared_variables(module)
         except PtxError:
             continue  # module_faults says so
         function = find_function(module, program.proc or "")

@@ -16,8 +16,8 @@ from nau_py.passes.ptx.rt import RtState
 from nau_py.passes.report import PassReport, Stages
 from nau_py.passes.tracing.textures import read_inputs
 from nau_py.raytrace.ptx.optix.optix6 import STACK_OVERFLOW
-from nau_py.raytrace.ptx.runtime.layout import BUFFER_INDEX, NO_CALLABLE
 from nau_py.raytrace.ptx.runtime.guarded import open_marks
+from nau_py.raytrace.ptx.runtime.layout import BUFFER_INDEX, NO_CALLABLE
 from nau_py.raytrace.selection.pixels import select_pixels
 
 if TYPE_CHECKING:
@@ -130,7 +130,9 @@ def execute_ptx(pass_: RaytracePass, frame: FrameContext) -> PassReport:
     )
 
 
-def _report(pass_: RaytracePass, frame: FrameContext, done: PtxLaunchResult, width: int) -> list[str]:
+def _report(
+    pass_: RaytracePass, frame: FrameContext, done: PtxLaunchResult, width: int
+) -> list[str]:
     """Report exceptions as diagnostics; return the printed texts as notes."""
 
     def place(index: int) -> str:

@@ -17,7 +17,8 @@ from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
 from nau_py.passes.ptx.variables import UNITS
 from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
-from nau_py.raytrace.ptx.optix.optix6 import BUFFER, BUFFER_BYTES, PLAIN, STACK_OVERFLOW, TEXTURE
+from nau_py.raytrace.ptx.optix.optix6 import STACK_OVERFLOW
+from nau_py.raytrace.ptx.optix.variables import BUFFER, BUFFER_BYTES, PLAIN, TEXTURE
 from nau_py.raytrace.ptx.runtime.guarded import open_marks
 
 if TYPE_CHECKING:

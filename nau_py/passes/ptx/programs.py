@@ -12,9 +12,11 @@ from nau_py.model.raytrace import Program, RaytracePass
 from nau_py.process.paths import resolve as resolve_path
 from nau_py.raytrace.programs.source import COMPILED, plain_name
 from nau_py.raytrace.programs.used import used_programs
-from nau_py.raytrace.ptx.compiler.translate import CALLABLE, compile_all
-from nau_py.raytrace.ptx.compiler.reader import PtxFunction, PtxModule, PtxError, read_ptx
-from nau_py.raytrace.ptx.optix.optix6 import RecordLayout, calls, is_old
+from nau_py.raytrace.ptx.compiler.module import PtxError, PtxFunction, PtxModule
+from nau_py.raytrace.ptx.compiler.reader import read_ptx
+from nau_py.raytrace.ptx.compiler.translate import CALLABLE
+from nau_py.raytrace.ptx.optix.compile import compile_all
+from nau_py.raytrace.ptx.optix.variables import RecordLayout, calls_interface, uses_variables
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import Session
@@ -76,8 +78,8 @@ class Programs:
                     raise ProgramError(error("T015", where, said)) from None
         self.layout = RecordLayout()
         for module in self.modules.values():
-            self.layout.add(module)
-        self.old = any(is_old(module) for module in self.modules.values())
+            self.layout.add_module(module)
+        self.old = any(uses_variables(module) for module in self.modules.values())
         self.flushes = any(module.flushes for module in self.modules.values())
 
     def _path(self, program: Program) -> Path:
@@ -88,7 +90,7 @@ class Programs:
 
     def native(self, program: Program) -> NativeModule:
         """The machine code of a program's module."""
-        from nau_py.raytrace.ptx.runtime.native import NativeModule, NativeError
+        from nau_py.raytrace.ptx.runtime.native import NativeError, NativeModule
 
         path = self._path(program)
         if path not in self.natives:
@@ -144,8 +146,8 @@ def module_faults(pass_: RaytracePass, modules: Modules, folder: Path) -> Iterat
                 yield error("T015", where, f"{label}: {path.name}:{line}: {text}")
         said.add(path)
     read = {path: module for path, module in modules.items() if isinstance(module, PtxModule)}
-    old = [path.name for path, module in read.items() if is_old(module)]
-    new = [path.name for path, module in read.items() if calls(module, "_optix_")]
+    old = [path.name for path, module in read.items() if uses_variables(module)]
+    new = [path.name for path, module in read.items() if calls_interface(module, "_optix_")]
     if old and new:
         yield error(
             "T015",
@@ -156,7 +158,7 @@ def module_faults(pass_: RaytracePass, modules: Modules, folder: Path) -> Iterat
     layout = RecordLayout()
     for path, module in read.items():
         try:
-            wrong = layout.add(module)
+            wrong = layout.add_module(module)
         except PtxError:
             continue  # said above
         for text in wrong:

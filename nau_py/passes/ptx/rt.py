@@ -16,11 +16,11 @@ from nau_py.passes.frame import FrameContext, Session, View
 from nau_py.passes.ptx.programs import Programs
 from nau_py.passes.ptx.resources import Resources
 from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
-from nau_py.raytrace.ptx.compiler.translate import PARAMETERS
+from nau_py.raytrace.ptx.optix.compile import PARAMETERS
 
 if TYPE_CHECKING:
     from nau_py.raster.targets import Target
-    from nau_py.raytrace.ptx.optix.records import TriangleGroup, RecordMaterial
+    from nau_py.raytrace.ptx.optix.records import RecordMaterial, TriangleGroup
     from nau_py.raytrace.ptx.runtime.launch import PtxLaunch
     from nau_py.scene.world import World
 

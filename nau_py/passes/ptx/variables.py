@@ -12,8 +12,8 @@ from nau_py.model.raytrace import Program, RaytracePass, RayVariable
 from nau_py.passes.ptx.programs import Modules, find_function
 from nau_py.process.paths import resolve as resolve_path
 from nau_py.raytrace.programs.used import used_programs
-from nau_py.raytrace.ptx.compiler.reader import PtxFunction, PtxModule, PtxError
-from nau_py.raytrace.ptx.optix.optix6 import DeclaredVariable, declared
+from nau_py.raytrace.ptx.compiler.module import PtxError, PtxFunction, PtxModule
+from nau_py.raytrace.ptx.optix.variables import DeclaredVariable, declared_variables
 
 CAMERA = {"eye": 12, "U": 12, "V": 12, "W": 12, "fov": 4, "top_object": 4}
 """Variables of the context, and their bytes."""
@@ -70,7 +70,7 @@ def variable_faults(
         if not isinstance(module, PtxModule):
             continue
         try:
-            names = declared(module)
+            names = declared_variables(module)
         except PtxError:
             continue  # module_faults says so
         function = find_function(module, program.proc or "")

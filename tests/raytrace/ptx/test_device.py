@@ -25,13 +25,8 @@ from nau_py.raytrace.ptx.runtime.launch import (
     run_launch,
     set_program,
 )
-<<<<<<< HEAD
-from nau_py.raytrace.ptx.runtime.native import Native
-from nau_py.raytrace.tracing.accelerator import CustomGeometry, build_groups
-=======
 from nau_py.raytrace.ptx.runtime.native import NativeModule
-from nau_py.raytrace.tracing.accelerator import Custom, build_groups
->>>>>>> 6c70048 (Classes of compiled programs have names of their own)
+from nau_py.raytrace.tracing.accelerator import CustomGeometry, build_groups
 
 COUNT = 33
 X = np.arange(COUNT) / 16 - 1

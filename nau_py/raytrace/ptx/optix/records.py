@@ -9,12 +9,8 @@ from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.geometry.cuda_texture import Image
 from nau_py.raytrace.ptx.runtime.launch import record_table, set_program
-<<<<<<< HEAD
-from nau_py.raytrace.tracing.accelerator import TriangleGeometry, build_groups
-=======
 from nau_py.raytrace.ptx.runtime.layout import RECORD_HEADER
-from nau_py.raytrace.tracing.accelerator import Triangles, build_groups
->>>>>>> 6c70048 (Classes of compiled programs have names of their own)
+from nau_py.raytrace.tracing.accelerator import TriangleGeometry, build_groups
 
 F32 = NDArray[np.float32]
 DATA = np.dtype(

@@ -14,15 +14,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-<<<<<<< HEAD
-from nau_py.raytrace.ptx.runtime.launch import TYPES, Launch, bind_host, block_of, frame_of
-from nau_py.raytrace.ptx.runtime.native import Native
-from nau_py.raytrace.tracing.accelerator import CustomGeometry, TriangleGeometry, build_groups
-=======
 from nau_py.raytrace.ptx.runtime.launch import TYPES, PtxLaunch, bind_host, block_of, frame_of
 from nau_py.raytrace.ptx.runtime.native import NativeModule
-from nau_py.raytrace.tracing.accelerator import Custom, Triangles, build_groups
->>>>>>> 6c70048 (Classes of compiled programs have names of their own)
+from nau_py.raytrace.tracing.accelerator import CustomGeometry, TriangleGeometry, build_groups
 
 TRIANGLES, CUSTOM = "triangles", "custom"
 _PROBED = 64

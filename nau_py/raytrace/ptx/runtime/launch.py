@@ -13,13 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-<<<<<<< HEAD
 from nau_py.raytrace.kernels.geometry.cuda_texture import sampler_address
-from nau_py.raytrace.ptx.runtime.frame import (
-=======
-from nau_py.raytrace.kernels.geometry.cuda_texture import sampler
 from nau_py.raytrace.ptx.runtime.layout import (
->>>>>>> 6c70048 (Classes of compiled programs have names of their own)
     FRAME_BYTES,
     FRAME_FIELDS,
     LAUNCH_BYTES,

@@ -14,13 +14,8 @@ from typing import Any
 import llvmlite.binding as llvm
 
 from nau_py.process.files import write_bytes
-<<<<<<< HEAD
 from nau_py.raytrace.kernels.core.machine_code import cache_folder
-from nau_py.raytrace.ptx.runtime.frame import fill_in
-=======
-from nau_py.raytrace.kernels.core.jit import cache_folder
 from nau_py.raytrace.ptx.runtime.layout import fill_in
->>>>>>> 6c70048 (Classes of compiled programs have names of their own)
 from nau_py.raytrace.tracing.accelerator import load_embree
 
 
