@@ -19,7 +19,7 @@ STRICT: dict[str, set[str]] = {
     "model": {"diagnostics", "syntax", "plugins"},
 }
 """Room to the part of the foundation that it may import."""
-REPEATED_CLASSES = {"Group", "Programs", "Resources", "Scene", "Style"}
+REPEATED_CLASSES = {"Programs", "Resources", "Scene", "Style"}
 """Class names that are used twice until they are renamed."""
 ARROWS = {
     "diagnostics": set(),

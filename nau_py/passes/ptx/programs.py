@@ -16,7 +16,7 @@ from nau_py.raytrace.ptx.compiler.module import PtxError, PtxFunction, PtxModule
 from nau_py.raytrace.ptx.compiler.reader import read_ptx
 from nau_py.raytrace.ptx.compiler.translate import CALLABLE
 from nau_py.raytrace.ptx.optix.compile import compile_all
-from nau_py.raytrace.ptx.optix.variables import RecordLayout, calls_interface, uses_variables
+from nau_py.raytrace.ptx.optix.variables import VariableLayout, calls_interface, uses_variables
 
 if TYPE_CHECKING:
     from nau_py.passes.frame import Session
@@ -76,7 +76,7 @@ class Programs:
                 except (OSError, PtxError) as problem:
                     said = f"{label}: '{path.name}' cannot be read: {problem}"
                     raise ProgramError(error("T015", where, said)) from None
-        self.layout = RecordLayout()
+        self.layout = VariableLayout()
         for module in self.modules.values():
             self.layout.add_module(module)
         self.old = any(uses_variables(module) for module in self.modules.values())
@@ -155,7 +155,7 @@ def module_faults(pass_: RaytracePass, modules: Modules, folder: Path) -> Iterat
             f"{label}: '{new[0]}' is of OptiX 7, '{old[0]}' of OptiX 3 to 6: a pass has one of "
             "them",
         )
-    layout = RecordLayout()
+    layout = VariableLayout()
     for path, module in read.items():
         try:
             wrong = layout.add_module(module)

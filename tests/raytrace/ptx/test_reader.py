@@ -12,7 +12,7 @@ from nau_py.raytrace.ptx.compiler.analysis import analyse_program
 from nau_py.raytrace.ptx.compiler.module import PtxError
 from nau_py.raytrace.ptx.compiler.reader import read_ptx
 from nau_py.raytrace.ptx.optix.compile import compile_all, compile_module
-from nau_py.raytrace.ptx.optix.variables import RecordLayout, declared_variables
+from nau_py.raytrace.ptx.optix.variables import VariableLayout, declared_variables
 from nau_py.raytrace.ptx.runtime.native import NativeError, NativeModule
 from tests.raytrace.ptx.bench import HEAD, source
 
@@ -183,7 +183,7 @@ def test_attributes_of_all_files_have_one_size() -> None:
     text = (DATA / "old.ptx").read_text()
     name = "_ZN21rti_internal_typeinfo4toldE[8] = {82, 97, 121, 0, "
     assert f"{name}16" in text
-    layout = RecordLayout()
+    layout = VariableLayout()
     assert layout.add_module(read_ptx(text)) == []
     (said,) = layout.add_module(read_ptx(text.replace(f"{name}16", f"{name}8")))
     assert said == "attribute 'told' has 8 bytes, elsewhere in the pass 16"

@@ -9,7 +9,7 @@ from nau_py.raytrace.ptx.compiler.module import PtxError, PtxModule
 from nau_py.raytrace.ptx.compiler.translate import CallHandler, translate_module
 from nau_py.raytrace.ptx.compiler.writer import FRAME, FunctionWriter
 from nau_py.raytrace.ptx.optix import optix6, optix7
-from nau_py.raytrace.ptx.optix.variables import RecordLayout
+from nau_py.raytrace.ptx.optix.variables import VariableLayout
 
 PARAMETERS = "optixLaunchParams"
 """Name of the variable that the host fills before a launch."""
@@ -28,7 +28,7 @@ def compile_module(module: PtxModule) -> str:
 
 
 def compile_all(
-    module: PtxModule, layout: RecordLayout | None = None
+    module: PtxModule, layout: VariableLayout | None = None
 ) -> tuple[str, list[PtxError]]:
     """Return LLVM's text of all functions that can be compiled, and the errors of the others.
 
@@ -37,7 +37,7 @@ def compile_all(
     """
     try:
         if layout is None:
-            layout = RecordLayout()
+            layout = VariableLayout()
             layout.add_module(module)
         bindings = layout.bindings(module)
     except PtxError as error:

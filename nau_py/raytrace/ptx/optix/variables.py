@@ -92,7 +92,7 @@ def calls_interface(module: PtxModule, prefix: str) -> bool:
 
 
 @dataclass(slots=True)
-class RecordLayout:
+class VariableLayout:
     """Offsets of the variables of all modules of a pass, by name.
 
     ``offsets`` are in a record, ``attributes`` in the attributes that intersection programs give.
