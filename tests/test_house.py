@@ -19,7 +19,7 @@ STRICT: dict[str, set[str]] = {
     "model": {"diagnostics", "syntax", "plugins"},
 }
 """Room to the part of the foundation that it may import."""
-REPEATED_CLASSES = {"Programs", "Resources", "Scene", "Style"}
+REPEATED_CLASSES = {"Style"}
 """Class names that are used twice until they are renamed."""
 ARROWS = {
     "diagnostics": set(),
@@ -43,14 +43,22 @@ ARROWS = {
         "raytrace/kernels",
         "raytrace/tracing",
     },
+    "raytrace/ptx/host": {
+        "raytrace/ptx/compiler",
+        "raytrace/ptx/optix",
+        "raytrace/ptx/runtime",
+        "raytrace/kernels",
+        "raytrace/programs",
+        "raytrace/tracing",
+        "scene",
+        "model",
+    },
     "effects": {"model", "raytrace/programs"},
     "passes": {
         "raster",
         "raytrace/kernels",
         "raytrace/programs",
-        "raytrace/ptx/compiler",
-        "raytrace/ptx/optix",
-        "raytrace/ptx/runtime",
+        "raytrace/ptx/host",
         "raytrace/selection",
         "raytrace/tracing",
         "graph",
@@ -104,6 +112,7 @@ ARROWS = {
         "model",
         "passes",
         "raster",
+        "raytrace/ptx/host",
         "raytrace/tracing",
         "reporting",
         "run",

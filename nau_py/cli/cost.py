@@ -89,12 +89,10 @@ def run(
     from nau_py.accuracy.cost import CostRequest, measure_cost
     from nau_py.cli.cost_output import print_cost, whole_progress, write_all
     from nau_py.passes.frame import RunOptions
-    from nau_py.passes.ptx.compiled import needs_supervision
+    from nau_py.raytrace.ptx.host.supervision import needs_supervision, run_supervised
 
     loaded = nau_py.load(project)
     if needs_supervision(loaded):  # compiled programs could end this process
-        from nau_py.passes.ptx.supervised_run import run_supervised
-
         status, said = run_supervised(ENTRY, sys.argv[1:], loaded)
         say(said, loaded.sources)
         raise typer.Exit(status)

@@ -153,13 +153,11 @@ def run(
     import nau_py
     from nau_py.cli.progress import progress_bar
     from nau_py.passes.frame import RunOptions
-    from nau_py.passes.ptx.compiled import needs_supervision
+    from nau_py.raytrace.ptx.host.supervision import needs_supervision, run_supervised
 
     loaded = nau_py.load(project)
     chosen = programs.value if programs else ""
     if needs_supervision(loaded, chosen):  # compiled programs could end this process
-        from nau_py.passes.ptx.supervised_run import run_supervised
-
         status, said = run_supervised(ENTRY, sys.argv[1:], loaded, program_limit)
         say(said, loaded.sources)
         raise typer.Exit(status)

@@ -13,7 +13,7 @@
    ``raytrace/tracing/estimate.py``);
 5. store: the colours in the render target, the clear value in all other pixels.
 
-Passes whose programs are PTX take ``passes/ptx/execute.py`` instead, with the same selection.
+Passes whose programs are PTX take ``passes/ptx_launch.py`` instead, with the same selection.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ from nau_py.model.values import DataType
 from nau_py.passes.access import add_process, buffer, texture
 from nau_py.passes.drawing import begin_view, run_process
 from nau_py.passes.frame import FrameContext
-from nau_py.passes.ptx.faults import ptx_faults
 from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport, Stages
 from nau_py.raytrace.programs.source import launches_ptx
+from nau_py.raytrace.ptx.host.faults import check_programs
 
 
 @register_pass("raytrace", "rt", "optix")
@@ -111,7 +111,7 @@ class RaytraceClass(PassClass):
     def faults(self, project: Project, pass_: Pass) -> Iterable[Diagnostic]:
         """Return the faults of compiled programs that cannot run."""
         if isinstance(pass_, RaytracePass) and launches_ptx(pass_, project.folder):
-            return ptx_faults(project, pass_)
+            return check_programs(project, pass_)
         return ()
 
     def execute(self, pass_: Pass, frame: FrameContext) -> PassReport:
@@ -119,7 +119,7 @@ class RaytraceClass(PassClass):
         if not isinstance(pass_, RaytracePass) or pass_.rtEntryPoint is None:
             return PassReport()
         if launches_ptx(pass_, frame.project.folder, frame.session.options.programs):
-            from nau_py.passes.ptx.execute import execute_ptx  # LLVM
+            from nau_py.passes.ptx_launch import execute_ptx  # LLVM
 
             return execute_ptx(pass_, frame)
         from nau_py.passes.tracing import steps  # Embree and numba: linting imports this module

@@ -1,6 +1,6 @@
-"""What programs and pass expect of each other: records, payloads, entries, parameters.
+"""Contracts between programs and their pass: records, payloads, entries and parameters.
 
-docs/format.md, 7.1 and 13.3.
+See docs/format.md, 7.1 and 13.3.
 """
 
 from __future__ import annotations
@@ -11,38 +11,43 @@ from pathlib import Path
 from nau_py.diagnostics.diagnostic import Diagnostic, error, warning
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import GEOMETRY_KINDS, Program, RaytracePass
-from nau_py.passes.ptx.programs import Modules, find_function
-from nau_py.passes.ptx.variables import mentioned, value_bytes
-from nau_py.process.paths import resolve as resolve_path
 from nau_py.raytrace.programs.description import MISS
 from nau_py.raytrace.programs.used import used_programs
 from nau_py.raytrace.ptx.compiler.analysis import ProgramUses, analyse_program
 from nau_py.raytrace.ptx.compiler.module import PtxError, PtxModule
+from nau_py.raytrace.ptx.host.modules import Modules, find_function, program_path
+from nau_py.raytrace.ptx.host.variable_faults import list_variables, value_bytes
 from nau_py.raytrace.ptx.optix.variables import declared_variables, uses_variables
 
 HIT_RECORD, OTHER_RECORD = 112, 16
-"""Bytes of the data in a record of hits, and of ray generation and misses."""
-UNHEEDED = ("SAMPLER", "ACCUMULATE", "TARGET_ERROR", "LIGHT_SAMPLES", "OCCLUSION_DISTANCE")
-"""Attributes of the pass that only Python programs and built-in ones follow."""
+"""Bytes of data in a hit record, and in a record of ray generation or a miss."""
+IGNORED_ATTRIBUTES = (
+    "SAMPLER",
+    "ACCUMULATE",
+    "TARGET_ERROR",
+    "LIGHT_SAMPLES",
+    "OCCLUSION_DISTANCE",
+)
+"""Attributes of the pass that compiled programs ignore."""
 PAYLOAD_WORDS = 2
-"""Of Nau's pipeline."""
+"""Words of a ray's payload in Nau's pipeline."""
 
 
-def contract_faults(
+def check_contracts(
     project: Project, pass_: RaytracePass, modules: Modules
 ) -> Iterator[Diagnostic]:
-    """Records that are too short, payloads that were not sent, entries without a ray type,
-    parameters at odd places."""
-    for name in (n for n in UNHEEDED if n in (pass_.settings or {})):
+    """Yield warnings of records and payloads that are too short, of incomplete entries and of
+    parameters without alignment (T008, T020 to T024)."""
+    for name in (n for n in IGNORED_ATTRIBUTES if n in (pass_.settings or {})):
         yield warning(
             "T024",
             pass_.location,
             f"pass '{pass_.name}': {name} has no effect on compiled programs, which draw their own "
             "samples",
         )
-    used = list(_used(project.folder, pass_, modules))
+    used = list(_analyse_used(project.folder, pass_, modules))
     if any(isinstance(m, PtxModule) and uses_variables(m) for m in modules.values()):
-        yield from _old_payloads(pass_, used)
+        yield from _check_old_payloads(pass_, used)
         for kind in GEOMETRY_KINDS:
             if not any(program.type == kind for program in pass_.rtGeometryProgram):
                 yield error(
@@ -52,19 +57,20 @@ def contract_faults(
                     "of OptiX 3 to 6 meet nothing",
                 )
         return
-    yield from _records(pass_, used)
-    yield from _payloads(pass_, used)
-    yield from _entries(pass_)
-    yield from _parameters(project, pass_)
+    yield from _check_records(pass_, used)
+    yield from _check_payloads(pass_, used)
+    yield from _check_entries(pass_)
+    yield from _check_parameters(project, pass_)
 
 
-Used = tuple[Program, PtxModule, ProgramUses]
+UsedCode = tuple[Program, PtxModule, ProgramUses]
 
 
-def _used(folder: Path, pass_: RaytracePass, modules: Modules) -> Iterator[Used]:
+def _analyse_used(folder: Path, pass_: RaytracePass, modules: Modules) -> Iterator[UsedCode]:
+    """Analyse each program of a pass whose module can be read."""
     seen: set[tuple[Path, str]] = set()
     for program, *_ in used_programs(pass_):
-        path = resolve_path(folder, program.file or "").best
+        path = program_path(folder, program.file)
         module, name = modules.get(path), program.proc or ""
         if not isinstance(module, PtxModule) or (path, name) in seen:
             continue
@@ -78,7 +84,7 @@ def _label(pass_: RaytracePass, program: Program) -> str:
     return f"pass '{pass_.name}': program '{program.proc}' of '{program.file}'"
 
 
-def _records(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]:
+def _check_records(pass_: RaytracePass, used: list[UsedCode]) -> Iterator[Diagnostic]:
     for program, _, uses in used:
         hit = getattr(program, "type", None) in ("CLOSEST_HIT", "ANY_HIT")
         size = HIT_RECORD if hit else OTHER_RECORD
@@ -91,7 +97,7 @@ def _records(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]:
             )
 
 
-def _payloads(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]:
+def _check_payloads(pass_: RaytracePass, used: list[UsedCode]) -> Iterator[Diagnostic]:
     sent = {words for _, _, uses in used for words in uses.sent}
     most = max(sent, default=0)
     for program, _, uses in used:
@@ -111,15 +117,15 @@ def _payloads(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]:
             )
 
 
-def _old_payloads(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]:
+def _check_old_payloads(pass_: RaytracePass, used: list[UsedCode]) -> Iterator[Diagnostic]:
     most = max((size for _, _, uses in used for size in uses.sent_bytes), default=0)
     for program, module, _ in used if most else []:
         try:
             names = declared_variables(module)
         except PtxError:
-            continue  # module_faults says so
+            continue  # reported by check_modules
         function = find_function(module, program.proc or "")
-        for name in mentioned(function, names) if function is not None else []:
+        for name in list_variables(function, names) if function is not None else []:
             size = names[name].size
             if names[name].semantic == "rtPayload" and size > most:
                 yield warning(
@@ -130,8 +136,8 @@ def _old_payloads(pass_: RaytracePass, used: list[Used]) -> Iterator[Diagnostic]
                 )
 
 
-def _entries(pass_: RaytracePass) -> Iterator[Diagnostic]:
-    """An entry with fewer ray types, or without what the default has (13.3, 63 and 64)."""
+def _check_entries(pass_: RaytracePass) -> Iterator[Diagnostic]:
+    """Find entries without a ray type or miss program that the default has (13.3, 63 and 64)."""
     types, default = pass_.ray_types, pass_.rtDefaultMaterial
     for entry in pass_.rtMaterialMap:
         has = [group.name for group in entry.rayTypes]
@@ -155,8 +161,8 @@ def _entries(pass_: RaytracePass) -> Iterator[Diagnostic]:
                 )
 
 
-def _parameters(project: Project, pass_: RaytracePass) -> Iterator[Diagnostic]:
-    """Addresses that do not lie at a multiple of their size (13.3, 67)."""
+def _check_parameters(project: Project, pass_: RaytracePass) -> Iterator[Diagnostic]:
+    """Find addresses that are not at a multiple of their size (13.3, 67)."""
     at = 0
     for node in pass_.rtGlobalParams:
         size = value_bytes(project, node) or 4

@@ -1,4 +1,4 @@
-"""The variables of OptiX 3 to 6 programs that a pass sets (7.2), checked by reading only."""
+"""Faults of the variables of OptiX 3 to 6 programs (7.2), found without executing them."""
 
 from __future__ import annotations
 
@@ -9,21 +9,20 @@ from nau_py.diagnostics.diagnostic import Diagnostic, error, warning
 from nau_py.diagnostics.suggest import format_names, suggest_name
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import Program, RaytracePass, RayVariable
-from nau_py.passes.ptx.programs import Modules, find_function
-from nau_py.process.paths import resolve as resolve_path
 from nau_py.raytrace.programs.used import used_programs
 from nau_py.raytrace.ptx.compiler.module import PtxError, PtxFunction, PtxModule
+from nau_py.raytrace.ptx.host.modules import Modules, find_function, program_path
 from nau_py.raytrace.ptx.optix.variables import DeclaredVariable, declared_variables
 
 CAMERA = {"eye": 12, "U": 12, "V": 12, "W": 12, "fov": 4, "top_object": 4}
-"""Variables of the context, and their bytes."""
-UNITS = 8
-"""``tex0`` to ``tex7``: textures of the first units."""
+"""Bytes of the camera's variables, by name."""
+TEXTURE_UNITS = 8
+"""Texture units that are variables: ``tex0`` to ``tex7``."""
 _WORD = re.compile(r"[A-Za-z_$][\w$]*")
 
 
-def given(project: Project, pass_: RaytracePass) -> dict[str, int | None]:
-    """What a pass sets, by name, with its bytes; None for buffers and textures."""
+def list_given(project: Project, pass_: RaytracePass) -> dict[str, int | None]:
+    """Return the variables that a pass sets, with their bytes; None for buffers and textures."""
     found: dict[str, int | None] = dict(CAMERA)
     found |= dict.fromkeys(pass_.ray_types, 4)
     owner = project.target_of(pass_)
@@ -32,7 +31,7 @@ def given(project: Project, pass_: RaytracePass) -> dict[str, int | None]:
     found |= {o.var: None for o in pass_.rtOutput if o.var}
     found |= {"vertex_buffer": None, "index_buffer": None}
     found |= {a.name: None for a in pass_.rtVertexAttributes if a.name}
-    found |= {f"tex{unit}": None for unit in range(UNITS)}
+    found |= {f"tex{unit}": None for unit in range(TEXTURE_UNITS)}
     for node in [*pass_.rtGlobalParams, *pass_.rtMaterialParams]:
         if node.name:
             found[node.name] = value_bytes(project, node)
@@ -40,7 +39,7 @@ def given(project: Project, pass_: RaytracePass) -> dict[str, int | None]:
 
 
 def value_bytes(project: Project, node: RayVariable) -> int | None:
-    """Bytes of a parameter's value; None where it is not known."""
+    """Return the bytes of a parameter's value; None for an unknown attribute."""
     if node.component == "ID" and node.type in ("TEXTURE", "BUFFER"):
         return 8
     set_ = project.registry.get(node.type or "")
@@ -48,8 +47,8 @@ def value_bytes(project: Project, node: RayVariable) -> int | None:
     return 4 * attribute.type.components if attribute is not None else None
 
 
-def mentioned(function: PtxFunction, names: dict[str, DeclaredVariable]) -> list[str]:
-    """The variables that a function's own instructions name, in their order."""
+def list_variables(function: PtxFunction, names: dict[str, DeclaredVariable]) -> list[str]:
+    """List the variables that a function's own instructions name, in their order."""
     found: dict[str, None] = {}
     for instruction in function.body or []:
         for operand in instruction.operands:
@@ -57,31 +56,31 @@ def mentioned(function: PtxFunction, names: dict[str, DeclaredVariable]) -> list
     return list(found)
 
 
-def variable_faults(
+def check_variables(
     project: Project,
     pass_: RaytracePass,
     modules: Modules,
 ) -> Iterator[Diagnostic]:
-    """Variables that programs read and nothing sets, or that have another size."""
-    known = given(project, pass_)
-    said: set[str] = set()
+    """Yield variables that nothing sets (T017), or that have another size (T018)."""
+    known = list_given(project, pass_)
+    seen: set[str] = set()
     for program, *_ in used_programs(pass_):
-        module = modules.get(resolve_path(project.folder, program.file or "").best)
+        module = modules.get(program_path(project.folder, program.file))
         if not isinstance(module, PtxModule):
             continue
         try:
             names = declared_variables(module)
         except PtxError:
-            continue  # module_faults says so
+            continue  # reported by check_modules
         function = find_function(module, program.proc or "")
-        for name in mentioned(function, names) if function is not None else []:
+        for name in list_variables(function, names) if function is not None else []:
             variable = names[name]
-            if name not in said and not variable.semantic:
-                yield from _variable(pass_, program, name, variable, known)
-            said.add(name)
+            if name not in seen and not variable.semantic:
+                yield from _check_variable(pass_, program, name, variable, known)
+            seen.add(name)
 
 
-def _variable(
+def _check_variable(
     pass_: RaytracePass,
     program: Program,
     name: str,
