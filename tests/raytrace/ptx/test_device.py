@@ -19,8 +19,8 @@ from nau_py.raytrace.ptx.runtime.launch import (
     TYPES,
     PtxLaunch,
     PtxLaunchResult,
-    block_of,
-    frame_of,
+    make_frame,
+    make_launch_block,
     record_table,
     run_launch,
     set_program,
@@ -58,7 +58,7 @@ def launch(
 ) -> tuple[Array, PtxLaunchResult]:
     """What the launch indices write, float32 (n, 4), for a square in the plane z = 0."""
     scene = RtScene([TriangleGroup("m", {"position": POSITIONS}, TRIANGLES)])
-    hits = scene.records([[(native.address(closest), 0)]], [RecordMaterial()], ["position"])
+    hits = scene.make_records([[(native.address(closest), 0)]], [RecordMaterial()], ["position"])
     return _run(native, generate, scene.handle, hits, miss, exception, callables)
 
 
@@ -187,8 +187,8 @@ def test_intersection_programs_report_kind_and_attributes(native: NativeModule) 
     nothing = record_table(1, DATA.itemsize)
     rays, mark = np.zeros(TYPES, np.uint64), np.zeros(1, np.int64)
     described = PtxLaunch((native, 0), 0, hits, nothing, nothing, (1, 1))
-    block = block_of(described, rays, mark.ctypes.data)
-    frame = frame_of(block, hits[0])
+    block = make_launch_block(described, rays, mark.ctypes.data)
+    frame = make_frame(block, hits[0])
     user = np.array([native.address("box"), frame.ctypes.data], np.uint64)
     places = (native.address("nau.bounds"), native.address("nau.user"))
     handle, kept = build_groups([CustomGeometry(1, *places, user.ctypes.data)])

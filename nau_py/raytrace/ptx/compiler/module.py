@@ -82,7 +82,7 @@ class PtxModule:
 
     @cached_property
     def flushes(self) -> bool:
-        """Tell whether float32 arithmetic treats denormals as zero in most instructions.
+        """Return True if float32 arithmetic treats denormals as zero in most instructions.
 
         Library functions may use ``.ftz`` inside a module that does not, so the majority counts.
         """

@@ -1,7 +1,7 @@
 """Write one function of a module as text of LLVM's language: registers, blocks and operands.
 
 Registers are memory on the stack. LLVM's optimiser turns them into values again. Integers have no
-sign, as in LLVM; the type of an instruction says how a value is read.
+sign, as in LLVM; the type of an instruction defines how a value is read.
 """
 
 from __future__ import annotations

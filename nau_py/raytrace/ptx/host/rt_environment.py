@@ -73,7 +73,7 @@ class RtEnvironment(LaunchEnvironment):
             native.set_variable(PARAMETERS, data)
         surfaces = [self._material(frame.gpu, group.material) for group in self.scene.groups]
         used = [a.name or "" for a in self.setup.pass_.rtVertexAttributes]
-        hits = self.scene.records(self._addresses, surfaces, used)
+        hits = self.scene.make_records(self._addresses, surfaces, used)
         launch = self.make_launch(self.scene.handle, hits, (frame.width, frame.height))
         launch.callables = np.array(self.bound.programs.callables(), np.uint64)
         return launch

@@ -59,7 +59,7 @@ def _short_name(name: str) -> str:
 
 
 def handles_call(name: str) -> bool:
-    """Tell whether a function is one of this interface."""
+    """Return True if a function is one of this interface."""
     short = _short_name(name)
     return any(short in names for names in (_TRACES, _READS, _CONSTANT, _OTHERS))
 

@@ -91,7 +91,7 @@ _PREFIX = "_optix_"
 
 
 def handles_call(name: str) -> bool:
-    """Tell whether a function is one of this interface."""
+    """Return True if a function is one of this interface."""
     if not name.startswith(_PREFIX):
         return False
     short = name.removeprefix(_PREFIX)

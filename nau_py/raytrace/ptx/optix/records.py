@@ -31,14 +31,16 @@ DATA = np.dtype(
         ("end", "u8"),
     ]
 )
-"""What Nau's programs see of a hit, 112 bytes behind the header."""
+"""Data of a hit record, 112 bytes behind the header."""
 assert DATA.itemsize == 112
 
 
 @dataclass(slots=True)
 class TriangleGroup:
-    """The triangles of one material of one object: ``attributes`` float32 (n, 4), by Nau's names;
-    ``triangles`` uint32 (m, 3)."""
+    """Triangles of one material of one object.
+
+    ``attributes``: float32 (n, 4) by Nau's names; ``triangles``: uint32 (m, 3).
+    """
 
     material: str
     attributes: dict[str, F32]
@@ -47,7 +49,7 @@ class TriangleGroup:
 
 @dataclass(slots=True)
 class RecordMaterial:
-    """What a material gives to its records."""
+    """Colours and texture of a material in its records."""
 
     diffuse: tuple[float, ...] = (0.0, 0.0, 0.0)
     specular: tuple[float, ...] = (0.0, 0.0, 0.0)
@@ -57,7 +59,7 @@ class RecordMaterial:
 
 
 class RtScene:
-    """Groups in the order of their records, with Embree's structure over them."""
+    """Triangle groups in the order of their records, with Embree's structure over them."""
 
     def __init__(self, groups: list[TriangleGroup]) -> None:
         self.groups = groups
@@ -67,11 +69,14 @@ class RtScene:
             parts = [TriangleGeometry(g.attributes["position"], g.triangles) for g in groups]
             self.handle, self._kept = build_groups(parts)
 
-    def records(
+    def make_records(
         self, programs: list[list[tuple[int, int]]], surfaces: list[RecordMaterial], used: list[str]
     ) -> NDArray[np.uint8]:
-        """The hit records: ``programs`` (closest hit, any hit) by group and ray type, addresses.
-        ``used``: the vertex attributes that the pass asks for."""
+        """Return the hit records, by group and ray type.
+
+        ``programs``: addresses (closest hit, any hit) by group and ray type; ``surfaces``: material
+        of each group; ``used``: vertex attributes that the pass requests.
+        """
         table = record_table(sum(len(p) for p in programs), DATA.itemsize)
         at = 0
         for group, addresses, surface in zip(self.groups, programs, surfaces):

@@ -76,13 +76,13 @@ def _declared_variable(
 
 
 def uses_variables(module: PtxModule) -> bool:
-    """Tell whether a module is of OptiX 3 to 6, which bind variables by name."""
+    """Return True if a module is of OptiX 3 to 6, which bind variables by name."""
     named = any(_INTERNAL.match(variable.name) for variable in module.variables)
     return named or calls_interface(module, "_rt_")
 
 
 def calls_interface(module: PtxModule, prefix: str) -> bool:
-    """Tell whether a module calls any function whose name begins with ``prefix``."""
+    """Return True if a module calls any function whose name begins with ``prefix``."""
     return any(
         split_call(instruction.operands)[1].startswith(prefix)
         for function in module.functions.values()

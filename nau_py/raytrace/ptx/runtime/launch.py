@@ -1,4 +1,4 @@
-"""Launches of compiled programs: launch indices over threads, whatever the programs' interface."""
+"""Launches of compiled programs: tiles of launch indices over threads."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ from nau_py.raytrace.ptx.runtime.layout import (
     RECORD_HEADER,
 )
 from nau_py.raytrace.ptx.runtime.native import NativeModule
-from nau_py.raytrace.ptx.runtime.printing import CALLBACK, Printed, formatted
+from nau_py.raytrace.ptx.runtime.printing import CALLBACK, PrintedTexts, format_text
 
 TRACE_DEPTH = 20
-"""The most that rays may start rays, as Nau sets it."""
+"""Greatest depth of rays that trace rays, as in Nau."""
 TRACE_DEPTH_EXCEEDED = (1 << 32) - 2
 """OPTIX_EXCEPTION_CODE_TRACE_DEPTH_EXCEEDED."""
 TYPES = 16
-"""Ray types that are counted by themselves."""
+"""Ray types with a counter of their own."""
 _TILE = 4096
-"""Launch indices that a thread takes at a time."""
-_LINES = 1000
-"""Texts that are kept of a launch."""
+"""Launch indices of a tile, which one thread runs."""
+_MOST_TEXTS = 1000
+"""PrintedTexts texts in the result of a launch."""
 
 
 def record_table(count: int, data_bytes: int) -> NDArray[np.uint8]:
-    """Zeroed records, uint8 (count, header and data), each of a multiple of 16 bytes."""
+    """Return records of zeros, uint8 (count, bytes): a header and data, a multiple of 16 bytes."""
     width = RECORD_HEADER + -(-data_bytes // 16) * 16
     return np.zeros((max(count, 1), width), np.uint8)
 
@@ -51,10 +51,15 @@ def set_program(record: NDArray[np.uint8], kind: str, address: int) -> None:
 
 @dataclass(slots=True)
 class PtxLaunch:
-    """What a launch needs. ``hits`` and ``misses``: records (:func:`record_table`) of one width;
-    ``context``: the record of ray generation and exception; ``indices``: int64, those that are
-    selected, None for all of ``size`` (width, height); ``flush``: denormals are zero; ``marks``:
-    takes the launch indices in work, -1 for none."""
+    """Programs, geometry and records of a launch.
+
+    ``generate``: module and address of the ray generation program; ``scene``: handle of Embree's
+    structure, 0 for none; ``hits`` and ``misses``: records (:func:`record_table`) of one width;
+    ``context``: the record of ray generation and exception; ``size``: width and height in launch
+    indices; ``indices``: int64, the selected launch indices, None for all; ``flush``: denormals are
+    zero; ``marks``: int64, receives the launch indices in work, -1 for none
+    (``runtime.guarded``).
+    """
 
     generate: tuple[NativeModule, int]
     scene: int
@@ -75,18 +80,24 @@ class PtxLaunch:
 
 @dataclass(slots=True)
 class PtxLaunchResult:
-    """What a launch did: rays by ray type; how many indices threw, the first of them and its
-    code; what was printed, by launch index."""
+    """Outcome of a launch.
+
+    ``rays``: traced rays by ray type; ``thrown``: launch indices that ended with an exception,
+    ``first`` and ``code``: the first of them and its code; ``printed``: texts by launch index.
+    """
 
     rays: NDArray[np.uint64]
     thrown: int = 0
     first: int = 0
     code: int = 0
-    printed: Printed = field(default_factory=list)
+    printed: PrintedTexts = field(default_factory=list)
 
 
-def block_of(launch: PtxLaunch, rays: NDArray[np.uint64], mark: int) -> NDArray[np.uint8]:
-    """The launch as programs and runtime see it (``frame.LAUNCH_FIELDS``)."""
+def make_launch_block(launch: PtxLaunch, rays: NDArray[np.uint64], mark: int) -> NDArray[np.uint8]:
+    """Return the memory of a launch that programs and runtime read (``layout.LAUNCH_FIELDS``).
+
+    ``rays``: uint64 (TYPES), receives the counts; ``mark``: address of the launch index in work.
+    """
     width, height = launch.size
     values = {
         "scene": launch.scene,
@@ -113,23 +124,26 @@ def block_of(launch: PtxLaunch, rays: NDArray[np.uint64], mark: int) -> NDArray[
     }
     block = np.zeros(LAUNCH_BYTES, np.uint8)
     for name, value in values.items():
-        put(block, name, value)
+        _write_field(block, name, value)
     return block
 
 
-def put(block: NDArray[np.uint8], name: str, value: int) -> None:
+def _write_field(block: NDArray[np.uint8], name: str, value: int) -> None:
     offset, type_ = LAUNCH_FIELDS[name]
     data = (np.uint64 if type_ == "u64" else np.uint32)(value).tobytes()
     block[offset : offset + len(data)] = np.frombuffer(data, np.uint8)
 
 
-def got(block: NDArray[np.uint8], name: str) -> int:
+def _read_field(block: NDArray[np.uint8], name: str) -> int:
     offset, type_ = LAUNCH_FIELDS[name]
     return int.from_bytes(block[offset : offset + (8 if type_ == "u64" else 4)].tobytes(), "little")
 
 
-def frame_of(block: NDArray[np.uint8], record: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """A frame in which a program runs outside of a launch: for a launch's block and a record."""
+def make_frame(block: NDArray[np.uint8], record: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return a frame, to run a program with a record outside of a launch.
+
+    ``block``: memory of a launch (:func:`make_launch_block`).
+    """
     frame = np.zeros(FRAME_BYTES, np.uint8)
     for name, value in (
         ("launch", block.ctypes.data),
@@ -140,16 +154,19 @@ def frame_of(block: NDArray[np.uint8], record: NDArray[np.uint8]) -> NDArray[np.
     return frame
 
 
-def bind_host(natives: list[NativeModule], printed: Printed) -> Any:
-    """Give modules the sampler and the printer. Returns what must live as long as the launch."""
+def bind_host(natives: list[NativeModule], printed: PrintedTexts) -> Any:
+    """Set the texture sampler and the printer of modules.
+
+    ``printed`` receives the texts. Returns an object to keep until the launch ends.
+    """
     lock = threading.Lock()
 
-    def tell(index: int, form: int, values: int, typed: int) -> None:
-        text = formatted(form, values, bool(typed))
+    def add_text(index: int, form: int, values: int, typed: int) -> None:
+        text = format_text(form, values, bool(typed))
         with lock:
             printed.append((index, text))
 
-    callback = CALLBACK(tell)
+    callback = CALLBACK(add_text)
     place = ctypes.cast(callback, ctypes.c_void_p).value or 0
     for native in natives:
         native.set_variable("nau.sampler", sampler_address().to_bytes(8, "little"))
@@ -161,10 +178,13 @@ def run_launch(
     launch: PtxLaunch,
     natives: list[NativeModule],
     threads: int = 0,
-    told: Callable[[int, int], None] = lambda done, total: None,
+    progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> PtxLaunchResult:
-    """Run the ray generation program for every index. ``natives``: all modules that take part.
-    Results do not depend on the number of threads."""
+    """Run the ray generation program for every selected launch index.
+
+    ``natives``: all modules of the programs; ``threads``: 0 for one per core; ``progress(done,
+    total)`` is called after each tile. Results do not depend on the number of threads.
+    """
     width, height = launch.size
     total = width * height if launch.indices is None else len(launch.indices)
     marks = np.full(1, -1, np.int64) if launch.marks is None else launch.marks
@@ -175,32 +195,35 @@ def run_launch(
         None, ctypes.c_uint64, ctypes.c_uint64, ctypes.c_uint64, ctypes.c_uint64
     )(native.address("nau.launch"))
 
-    def part(begin: int) -> tuple[NDArray[np.uint64], NDArray[np.uint8]]:
+    def run_tile(begin: int) -> tuple[NDArray[np.uint64], NDArray[np.uint8]]:
         rays = np.zeros(TYPES, np.uint64)
         own = np.full(1, -1, np.int64)
         slot = begin // _TILE % len(marks)
         mark = (marks[slot:] if launch.marks is not None else own).ctypes.data
-        block = block_of(launch, rays, mark)
+        block = make_launch_block(launch, rays, mark)
         run(program, block.ctypes.data, begin, min(begin + _TILE, total))
         marks[slot] = -1
         return rays, block
 
     done = 0
     with ThreadPoolExecutor(threads or os.cpu_count() or 1) as pool:
-        jobs = [pool.submit(part, begin) for begin in range(0, total, _TILE)]
+        jobs = [pool.submit(run_tile, begin) for begin in range(0, total, _TILE)]
         try:
             for job in jobs:
                 rays, block = job.result()
                 found.rays += rays
-                thrown = got(block, "thrown_count")
+                thrown = _read_field(block, "thrown_count")
                 if thrown and not found.thrown:
-                    found.first, found.code = got(block, "first_thrown"), got(block, "first_code")
+                    found.first, found.code = (
+                        _read_field(block, "first_thrown"),
+                        _read_field(block, "first_code"),
+                    )
                 found.thrown += thrown
                 done = min(done + _TILE, total)
-                told(done, total)
+                progress(done, total)
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     del kept
-    found.printed = sorted(found.printed, key=lambda line: line[0])[:_LINES]
+    found.printed = sorted(found.printed, key=lambda line: line[0])[:_MOST_TEXTS]
     return found

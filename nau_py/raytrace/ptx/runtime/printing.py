@@ -1,7 +1,7 @@
 """Text that compiled programs print: C's format strings and their values, read from memory.
 
-``printf`` (*CUDA C++ Programming Guide*, "Formatted Output") gives values one after the other, each
-aligned to its size, floats as doubles; ``rtPrintf`` of OptiX 6 gives words with their types.
+``printf`` (*CUDA C++ Programming Guide*, "Formatted Output") stores values one after the other,
+each aligned to its size, floats as doubles. ``rtPrintf`` of OptiX 6 stores words with their types.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ import re
 import struct
 from collections.abc import Iterator
 
-Printed = list[tuple[int, str]]
-"""Launch index and text."""
+PrintedTexts = list[tuple[int, str]]
+"""Launch indices and texts."""
 CALLBACK = ctypes.CFUNCTYPE(
     None, ctypes.c_uint64, ctypes.c_uint64, ctypes.c_uint64, ctypes.c_uint32
 )
@@ -21,11 +21,11 @@ _SPEC = re.compile(
     r"(?P<size>hh|h|ll|l|z)?(?P<kind>[a-zA-Z%])"
 )
 _MOST = 1 << 16
-"""Bytes of a text: one without its end is cut."""
+"""Longest text in bytes: a text without a final zero is cut."""
 _TYPES = {0: "<i", 1: "<q", 2: "<f", 3: "<d"}
 
 
-def _string(address: int) -> str:
+def _read_string(address: int) -> str:
     if not address:
         return "(null)"
     found = bytearray()
@@ -34,7 +34,7 @@ def _string(address: int) -> str:
     return found.decode("utf-8", "replace")
 
 
-def _values(address: int, kinds: list[str]) -> Iterator[int | float]:
+def _read_values(address: int, kinds: list[str]) -> Iterator[int | float]:
     at = address
     for kind in kinds:
         size = struct.calcsize(kind)
@@ -43,7 +43,7 @@ def _values(address: int, kinds: list[str]) -> Iterator[int | float]:
         at += size
 
 
-def _typed(address: int, count: int) -> Iterator[int | float]:
+def _read_typed(address: int, count: int) -> Iterator[int | float]:
     at = address
     for _ in range(count):
         kind = _TYPES.get(struct.unpack("<I", ctypes.string_at(at, 4))[0], "<i")
@@ -52,18 +52,18 @@ def _typed(address: int, count: int) -> Iterator[int | float]:
         at += 4 + size
 
 
-def _kind(spec: re.Match[str]) -> str:
+def _value_kind(spec: re.Match[str]) -> str:
     if spec["kind"] in "eEfFgGaA":
         return "<d"
     wide = spec["size"] in ("l", "ll", "z") or spec["kind"] in "sp"
     return "<q" if wide else "<i"
 
 
-def _one(spec: re.Match[str], value: int | float) -> str:
+def _format_value(spec: re.Match[str], value: int | float) -> str:
     kind, layout = spec["kind"], f"%{spec['flags']}{spec['width']}{spec['precision'] or ''}"
     whole = int(value) if value == value and abs(value) != float("inf") else 0
     if kind == "s":
-        return (layout + "s") % _string(whole)
+        return (layout + "s") % _read_string(whole)
     if kind == "p":
         return (layout + "s") % f"0x{whole & (1 << 64) - 1:x}"
     if kind in "uoxX":
@@ -76,12 +76,15 @@ def _one(spec: re.Match[str], value: int | float) -> str:
     return spec[0]
 
 
-def formatted(form: int, values: int, typed: bool) -> str:
-    """The text of the format string at an address, with the values at another."""
-    text = _string(form)
+def format_text(form: int, values: int, typed: bool) -> str:
+    """Format the string at address ``form`` with the values at another address.
+
+    ``typed``: the values are words with their types (OptiX 6).
+    """
+    text = _read_string(form)
     specs = [spec for spec in _SPEC.finditer(text) if spec["kind"] != "%"]
     if typed:
-        found = _typed(values, len(specs))
+        found = _read_typed(values, len(specs))
     else:
-        found = _values(values, [_kind(spec) for spec in specs])
-    return _SPEC.sub(lambda s: "%" if s["kind"] == "%" else _one(s, next(found)), text)
+        found = _read_values(values, [_value_kind(spec) for spec in specs])
+    return _SPEC.sub(lambda s: "%" if s["kind"] == "%" else _format_value(s, next(found)), text)

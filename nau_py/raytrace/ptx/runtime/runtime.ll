@@ -1,5 +1,6 @@
-; What compiled PTX programs call: rays through Embree, hits of intersection programs, and the loop
-; over launch indices. Names with a dollar are places: frame.py fills them in.
+; Functions that compiled PTX programs call: tracing of rays with Embree, hits of intersection
+; programs, buffers, printing; and the loop over launch indices. Names with a dollar are offsets,
+; which layout.py fills in.
 
 declare void @rtcIntersect1(ptr, ptr, ptr)
 declare void @llvm.x86.sse.ldmxcsr(ptr)
@@ -63,7 +64,7 @@ ask:
   ret void
 }
 
-; An exception of the runtime itself.
+; Throw an exception of the runtime.
 define internal void @throw(ptr %launch, i32 %code, i32 %detail) {
   call void @put32(ptr %launch, i64 $launch_code, i32 %code)
   call void @put32(ptr %launch, i64 $launch_detail_0, i32 %detail)
@@ -71,7 +72,7 @@ define internal void @throw(ptr %launch, i32 %code, i32 %detail) {
   ret void
 }
 
-; The record of a group for a ray type; null where there is none.
+; Return the record of a group for a ray type; null where there is none.
 define internal ptr @record(ptr %launch, i32 %geometry, i32 %offset, i32 %stride) alwaysinline {
   %g = mul i32 %geometry, %stride
   %r = add i32 %g, %offset
@@ -90,7 +91,7 @@ none:
   ret ptr null
 }
 
-; A frame for what happens to a ray at a primitive; %ray: an Embree ray.
+; Fill a frame for the programs of a primitive. %ray: an Embree ray.
 define internal void @build(ptr %frame, ptr %query, ptr %ray, ptr %record, i32 %primitive, i32 %geometry) alwaysinline {
   %caller = call ptr @getp(ptr %query, i64 $query_caller)
   call void @llvm.memcpy.p0.p0.i64(ptr %frame, ptr %caller, i64 $FRAME, i1 false)
@@ -114,7 +115,7 @@ define internal void @build(ptr %frame, ptr %query, ptr %ray, ptr %record, i32 %
   ret void
 }
 
-; Whether a ray takes a hit: what its any-hit program says, if there is one.
+; Return 1 if a ray accepts a hit: its any-hit program, if there is one, may ignore it.
 define internal i32 @offer(ptr %query, ptr %frame, ptr %record) {
   %flags = call i32 @get32(ptr %query, i64 $query_flags)
   %noany = and i32 %flags, 1
@@ -129,11 +130,11 @@ run:
   %launch = call ptr @getp(ptr %frame, i64 $frame_launch)
   %thrown = call i32 @get32(ptr %launch, i64 $launch_thrown)
   %isthrown = icmp ne i32 %thrown, 0
-  br i1 %isthrown, label %broken, label %asked
+  br i1 %isthrown, label %broken, label %checked
 broken:
   call void @put32(ptr %query, i64 $query_ended, i32 1)
   ret i32 0
-asked:
+checked:
   %status = call i32 @get32(ptr %frame, i64 $frame_status)
   %ignored = and i32 %status, $IGNORE
   %drop = icmp ne i32 %ignored, 0
@@ -155,7 +156,7 @@ done:
   ret i32 1
 }
 
-; Ask the intersection program of a record for a primitive; whether a hit was taken.
+; Run the intersection program of a record for a primitive. Return 1 if a hit was accepted.
 define internal i32 @intersect(ptr %query, ptr %frame, ptr %program, i32 %primitive) {
   %argument = alloca i32
   store i32 %primitive, ptr %argument
@@ -169,7 +170,7 @@ define internal i32 @intersect(ptr %query, ptr %frame, ptr %program, i32 %primit
   ret i32 %taken
 }
 
-; An intersection program tells a distance: whether that can be a hit.
+; An intersection program proposes a distance. Return 1 if it can be a hit.
 define i32 @nau.potential(ptr %frame, float %t) nounwind {
   %query = call ptr @getp(ptr %frame, i64 $frame_query)
   %none = icmp eq ptr %query, null
@@ -189,7 +190,7 @@ no:
   ret i32 0
 }
 
-; It reports the hit: whether the ray takes it.
+; An intersection program reports its hit. Return 1 if the ray accepts it.
 define i32 @nau.report(ptr %frame) nounwind {
   %offered = alloca [$FRAME x i8], align 16
   %query = call ptr @getp(ptr %frame, i64 $frame_query)
@@ -226,7 +227,7 @@ no:
   ret i32 0
 }
 
-; OptiX 7 does both at once, and gives the attributes.
+; Propose and report a hit with its attributes, as one call of OptiX 7 does.
 define i32 @nau.report7(ptr %frame, float %t, i32 %kind, ptr %words, i64 %bytes) nounwind {
   %may = call i32 @nau.potential(ptr %frame, float %t)
   %can = icmp ne i32 %may, 0
@@ -247,7 +248,7 @@ no:
   ret i32 0
 }
 
-; A word of a hit's attributes; of a triangle: its barycentrics.
+; Return a word of a hit's attributes. Those of a triangle are its barycentric coordinates.
 define i32 @nau.attribute(ptr %frame, i32 %index) nounwind {
   %words = call ptr @getp(ptr %frame, i64 $frame_attributes)
   %none = icmp eq ptr %words, null
@@ -265,7 +266,7 @@ no:
   ret i32 0
 }
 
-; The hit that Embree offers at one of its triangles.
+; Filter a hit of Embree at one of its triangles.
 define void @nau.filter(ptr %args) nounwind {
   %frame = alloca [$FRAME x i8], align 16
   %valid = call ptr @getp(ptr %args, i64 0)
@@ -354,7 +355,7 @@ done:
   ret void
 }
 
-; A primitive that only its intersection program knows (RTCIntersectFunctionNArguments, N = 1).
+; Intersect a primitive of user geometry (RTCIntersectFunctionNArguments, N = 1).
 define void @nau.user(ptr %args) nounwind {
   %frame = alloca [$FRAME x i8], align 16
   %valid = call ptr @getp(ptr %args, i64 0)
@@ -399,8 +400,8 @@ done:
   ret void
 }
 
-; The box of a primitive (RTCBoundsFunctionArguments): its bounding box program writes six floats.
-; User data: the program, a frame.
+; Compute the box of a primitive (RTCBoundsFunctionArguments): its bounding box program writes six
+; floats. User data: the program and a frame.
 define void @nau.bounds(ptr %args) nounwind {
   %argument = alloca i32
   %address = alloca ptr
@@ -423,7 +424,7 @@ define void @nau.bounds(ptr %args) nounwind {
   ret void
 }
 
-; The boxes of all primitives, eight floats each.
+; Compute the boxes of all primitives, eight floats each.
 define void @nau.boxes(ptr %user, i64 %count, ptr %out) nounwind {
 entry:
   %args = alloca [24 x i8], align 16
@@ -446,14 +447,14 @@ done:
   ret void
 }
 
-; Ask an intersection program about one ray, eight floats: origin, tmin, direction, tmax. The
+; Run an intersection program for one ray, eight floats: origin, tmin, direction, tmax. Return the
 ; distance of the hit, less than zero for none.
 define float @nau.probe(ptr %user, i32 %primitive, ptr %ray) nounwind {
   %frame = alloca [$FRAME x i8], align 16
   %query = alloca [$QUERY x i8], align 16
-  %asked = alloca [96 x i8], align 16
+  %embree = alloca [96 x i8], align 16
   store [$QUERY x i8] zeroinitializer, ptr %query
-  store [96 x i8] zeroinitializer, ptr %asked
+  store [96 x i8] zeroinitializer, ptr %embree
   %program = call ptr @getp(ptr %user, i64 0)
   %caller = call ptr @getp(ptr %user, i64 8)
   %launch = call ptr @getp(ptr %caller, i64 $frame_launch)
@@ -465,13 +466,13 @@ define float @nau.probe(ptr %user, i32 %primitive, ptr %ray) nounwind {
   call void @putp(ptr %query, i64 $query_committed, ptr %committed)
   call void @putp(ptr %query, i64 $query_caller, ptr %caller)
   call void @put32(ptr %query, i64 $query_flags, i32 1)
-  call void @llvm.memcpy.p0.p0.i64(ptr %asked, ptr %ray, i64 28, i1 false)
+  call void @llvm.memcpy.p0.p0.i64(ptr %embree, ptr %ray, i64 28, i1 false)
   %tplace = getelementptr i8, ptr %ray, i64 28
   %tmax = load float, ptr %tplace
   call void @putf(ptr %query, i64 $query_best, float %tmax)
   %data = call ptr @getp(ptr %caller, i64 $frame_record)
   %record = getelementptr i8, ptr %data, i64 -$HEADER
-  call void @build(ptr %frame, ptr %query, ptr %asked, ptr %record, i32 %primitive, i32 0)
+  call void @build(ptr %frame, ptr %query, ptr %embree, ptr %record, i32 %primitive, i32 0)
   %taken = call i32 @intersect(ptr %query, ptr %frame, ptr %program, i32 %primitive)
   call void @put32(ptr %launch, i64 $launch_thrown, i32 0)
   %hits = icmp ne i32 %taken, 0
@@ -638,7 +639,7 @@ done:
   ret void
 }
 
-; The address of a buffer's element (OptiX 6); an exception where there is none.
+; Return the address of a buffer's element (OptiX 6). Throw where there is none.
 define i64 @nau.element(ptr %frame, i64 %buffer, i32 %size, i64 %i, i64 %j, i64 %k) nounwind {
   %b = inttoptr i64 %buffer to ptr
   %data = call i64 @get64(ptr %b, i64 0)
@@ -669,7 +670,7 @@ wrong:
   ret i64 0
 }
 
-; The address of a callable program; an exception where there is none.
+; Return the address of a callable program. Throw where there is none.
 define i64 @nau.callable(ptr %frame, i32 %index) nounwind {
   %launch = call ptr @getp(ptr %frame, i64 $frame_launch)
   %count = call i32 @get32(ptr %launch, i64 $launch_callable_count)
@@ -686,7 +687,7 @@ wrong:
   ret i64 0
 }
 
-; The corners of a triangle, nine floats, from Nau's record of its group.
+; Return the corners of a triangle, nine floats, from Nau's record of its group.
 define void @nau.vertices(ptr %frame, i32 %primitive, i32 %group, ptr %out) nounwind {
 entry:
   store [9 x float] zeroinitializer, ptr %out
@@ -719,9 +720,9 @@ done:
   ret void
 }
 
-; Text that a program prints goes to the host: launch index, format, values, whether these are
-; words with types (OptiX 6).
-define internal void @tell(ptr %launch, i64 %format, i64 %values, i32 %typed) {
+; Pass a printed text to the host: launch index, format, values, and 1 where the values are words
+; with types (OptiX 6).
+define internal void @print(ptr %launch, i64 %format, i64 %values, i32 %typed) {
   %printer = load ptr, ptr @nau.printer
   %none = icmp eq ptr %printer, null
   br i1 %none, label %done, label %ask
@@ -736,7 +737,7 @@ done:
 
 define void @nau.printf(ptr %frame, i64 %format, i64 %values) nounwind {
   %launch = call ptr @getp(ptr %frame, i64 $frame_launch)
-  call void @tell(ptr %launch, i64 %format, i64 %values, i32 0)
+  call void @print(ptr %launch, i64 %format, i64 %values, i32 0)
   ret void
 }
 
@@ -747,7 +748,7 @@ define internal void @print_end(ptr %launch) {
 print:
   %words = getelementptr i8, ptr %launch, i64 $launch_printed_0
   %values = ptrtoint ptr %words to i64
-  call void @tell(ptr %launch, i64 %format, i64 %values, i32 1)
+  call void @print(ptr %launch, i64 %format, i64 %values, i32 1)
   %p = getelementptr i8, ptr %launch, i64 $launch_format
   store i64 0, ptr %p
   br label %done
@@ -779,8 +780,8 @@ done:
   ret void
 }
 
-; Launch indices begin to end of a launch, by the ray generation program. Denormals are zero while
-; it runs where the launch says so (SSE: flush to zero, denormals are zero).
+; Run the ray generation program for the launch indices from begin to end. Denormals are zero where
+; the launch flushes them (SSE: flush to zero, denormals are zero).
 define void @nau.launch(ptr %program, ptr %launch, i64 %begin, i64 %end) nounwind {
 entry:
   %frame = alloca [$FRAME x i8], align 16
