@@ -16,7 +16,7 @@ from nau_py.viewer.cost_run import ViewerCostRun
 from nau_py.viewer.render_thread import make_worker
 from nau_py.viewer.request import PictureRequest
 from tests.conftest import LAMBERT, Folder, RayProject
-from tests.passes.test_ptx import room as room
+from tests.raytrace.ptx.host.test_rt_environment import room as room
 
 BIN = Path(sys.executable).parent
 MODULES = [

@@ -27,8 +27,10 @@ def register(type_: str) -> str:
 
 
 def source(body: str, inputs: list[str], output: str) -> str:
-    """A module whose entry ``run`` has element x of each input in %a0, %a1 …, and stores %d.
-    Names for scratch: %p0-%p3, %i0-%i7 (b32), %l0-%l7 (b64), %f0-%f7, %g0-%g7 (f64)."""
+    """Return a module whose entry ``run`` has element x of each input in %a0, %a1 …, and stores %d.
+
+    Registers for ``body``: %p0-%p3, %i0-%i7 (b32), %l0-%l7 (b64), %f0-%f7, %g0-%g7 (f64).
+    """
     lines = [HEAD, ".visible .entry run()\n{"]
     lines += [
         "\t.reg .pred %p<4>;",
@@ -52,7 +54,7 @@ def source(body: str, inputs: list[str], output: str) -> str:
 
 
 def run(body: str, inputs: dict[str, Array] | list[tuple[str, Array]], output: str) -> Array:
-    """The outputs of ``body`` for the elements of (type, values) inputs."""
+    """Return the outputs of ``body`` for each element of the inputs, (type, values)."""
     listed = list(inputs.items()) if isinstance(inputs, dict) else inputs
     module = read_ptx(source(body, [t for t, _ in listed], output))
     native = NativeModule(compile_module(module))

@@ -20,8 +20,10 @@ _SPECIAL = [
 
 
 def inputs() -> dict[str, np.ndarray[Any, Any]]:
-    """What the kernels read, by member of their parameters: special values in pairs, then random
-    ones, then random bits."""
+    """Return the inputs of the kernels by member of their parameters.
+
+    Special values in pairs come first, then random values, then random bits.
+    """
     chance = np.random.default_rng(5)
     special = np.array(_SPECIAL, np.float32)
     pairs = len(special) ** 2
@@ -45,7 +47,7 @@ def inputs() -> dict[str, np.ndarray[Any, Any]]:
 
 
 ORDER = ("a", "b", "f", "ia", "ib", "i", "da", "d", "la", "l")
-"""The members of the kernels' parameters; one letter for what they write, as their names begin."""
+"""Members of the kernels' parameters; the letter of an output begins the names of its kernels."""
 OUTPUTS = {"f": np.float32, "i": np.int32, "d": np.float64, "l": np.int64}
 
 

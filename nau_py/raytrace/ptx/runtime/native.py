@@ -30,7 +30,7 @@ _RUNTIME = files("nau_py.raytrace.ptx.runtime") / "runtime.ll"
 
 @lru_cache(maxsize=1)
 def _processor() -> Any:
-    llvm.initialize_native_make_target()
+    llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     return llvm.Target.from_default_triple()
 

@@ -1,4 +1,4 @@
-// Programs in the interface of OptiX 7 and 8 for test_device.py.
+// Programs in the interface of OptiX 7 and 8 for test_optix7.py.
 // scripts/ptx -rdc=true tests/raytrace/ptx/data/new.cu makes new.ptx.
 
 typedef unsigned long long u64;

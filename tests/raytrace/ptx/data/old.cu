@@ -1,4 +1,4 @@
-// Programs in the interface of OptiX 3 to 6 for tests/passes/test_optix.py.
+// Programs in the interface of OptiX 3 to 6 for tests/raytrace/ptx/host/test_optix_environment.py.
 // scripts/ptx tests/raytrace/ptx/data/old.cu makes old.ptx.
 
 #include "../../../../projects/selective/programs/optix6.cuh"

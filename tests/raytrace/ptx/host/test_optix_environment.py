@@ -1,4 +1,4 @@
-"""Class ``optix``: programs of OptiX 3 to 6, from project file to picture. ``data/old.cu`` is theirs."""
+"""Class ``optix``: programs of OptiX 3 to 6 (``data/old.cu``), from project file to picture."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pytest
 import nau_py
 from tests.conftest import PROJECTS, Folder, pixel_rays
 
-DATA = Path(__file__).parent.parent / "raytrace" / "ptx" / "data" / "old.ptx"
+DATA = Path(__file__).parent.parent / "data" / "old.ptx"
 SIZE = (32, 24)
 PROJECT = """\
 <project name="Old" width="32" height="24">
@@ -94,7 +94,7 @@ TRIANGLES = [
     ("Red", [(-1.0, 0.0, 0.0), (-0.9, 0.0, 0.0), (-0.9, 0.1, 0.0), (-1.0, 0.1, 0.0)]),
     ("Green", [(0.8, 0.3, -1.0), (0.9, 0.3, -1.0), (0.9, 0.4, -1.0), (0.8, 0.4, -1.0)]),
 ]
-"""Quads: of both triangles the first corner is the same, so spheres stand there twice."""
+"""Quads: both triangles begin at the same corner, so each sphere exists twice."""
 Picture = np.ndarray[Any, Any]
 
 
@@ -122,7 +122,7 @@ def render(old: Folder, generate: str = "camera", **options: Any) -> nau_py.Fram
 
 
 def spheres(centre: tuple[float, ...], radius: float = 0.5) -> tuple[Picture, Picture]:
-    """Near and far distances of the pixels' rays, in lengths of W; NaN for none. float64."""
+    """Return near and far distances of the pixels' rays in lengths of W, float64; NaN for none."""
     origin, direction = pixel_rays(SIZE, (0, 0, 3))
     direction = direction / -direction[:, :, 2:]  # programs leave it as long as W is deep
     o = origin - np.array(centre)
@@ -132,8 +132,8 @@ def spheres(centre: tuple[float, ...], radius: float = 0.5) -> tuple[Picture, Pi
     return (-b - root) / a, (-b + root) / a
 
 
-def test_primitives_that_only_their_programs_know(old: Folder) -> None:
-    """Spheres as user geometry: distances, attributes, materials and misses are analytic ones."""
+def test_user_geometry_of_programs(old: Folder) -> None:
+    """Spheres as user geometry: distances, attributes, materials and misses match analytic ones."""
     frame = render(old)
     out = frame.targets["L::out"]
     (note,) = frame.report["frames"][0]["passes"][1]["notes"]
@@ -152,8 +152,8 @@ def test_primitives_that_only_their_programs_know(old: Folder) -> None:
 
 
 def test_any_hit_programs_see_every_candidate(old: Folder) -> None:
-    """Both sides of both spheres of a quad, none of them taken; misses without a program keep what
-    was sent."""
+    """Both sides of both spheres of a quad are candidates, and none is accepted. A miss without a
+    program keeps the payload."""
     out = render(old, "counter").targets["L::out"]
     near, far = spheres((-1.0, 0.0, 0.0))
     hit = ~np.isnan(near)
@@ -167,7 +167,7 @@ def test_threads_change_nothing(old: Folder) -> None:
     np.testing.assert_array_equal(*pictures)
 
 
-def test_exceptions_have_their_program_and_a_finding(old: Folder) -> None:
+def test_exceptions_run_their_program_and_are_reported(old: Folder) -> None:
     frame = render(old, "throws")
     out = frame.targets["L::out"]
     x, y = np.meshgrid(np.arange(32), np.arange(24)[::-1])  # programs count rows from below
@@ -205,7 +205,7 @@ def test_rays_without_end_end_at_the_greatest_depth(old: Folder) -> None:
         ("\tmov.u64 %rd1, 16;\n\tst.global.u32 [%rd1], %r1;\n", "ended the process by signal SIG"),
     ],
 )
-def test_geometry_programs_that_fault_cost_their_child_only(
+def test_geometry_programs_that_crash_end_their_worker_only(
     old: Folder, body: str, words: str
 ) -> None:
     head = ".visible .entry bad(.param .u32 p, .param .u64 q)\n{\n\t.reg .b32 %r<3>;\n\t.reg .b64 %rd<3>;\n"
@@ -222,14 +222,14 @@ def test_geometry_programs_that_fault_cost_their_child_only(
     assert "Traceback" not in done.stderr
 
 
-def test_what_lies_beyond_a_buffer_is_an_exception(old: Folder) -> None:
+def test_access_beyond_a_buffer_is_an_exception(old: Folder) -> None:
     out = render(old, "beyond").targets["L::out"]
     assert (out[:, :-1] > 0).all()
     np.testing.assert_array_equal(out[:, -1, :2], np.tile([-1, 0x3FD], (24, 1)))
 
 
 def test_inputs_and_outputs(old: Folder) -> None:
-    """A texture by texels, the same one as a buffer, sizes, and a second output."""
+    """A texture read by texels, the same texture as a buffer, sizes, and a second output."""
     frame = render(old, "copies")
     drawn, out, more = (frame.targets[f"L::{n}"] for n in ("seen", "out", "more"))
     assert {0.5, 1.0} == set(np.unique(drawn[:, :, 0]))
@@ -240,14 +240,14 @@ def test_inputs_and_outputs(old: Folder) -> None:
     np.testing.assert_array_equal(more[:, :, 1:], np.tile([0.25, 0.5, 1], (24, 32, 1)))
 
 
-def test_what_programs_print_is_in_the_report(old: Folder) -> None:
+def test_printed_texts_are_in_the_report(old: Folder) -> None:
     notes = render(old, "prints").report["frames"][0]["passes"][1]["notes"]
     assert notes[1:] == [
         f"printed at (3, {y}): at 3 {y}:  1.50 text 100% -1099511627776" for y in (0, 1)
     ]
 
 
-def test_what_programs_print_in_the_old_way(old: Folder) -> None:
+def test_printed_texts_of_optix_6(old: Folder) -> None:
     """``rtPrintf``: a format, then words with their types: an integer, a float, a double."""
     text = "i %d f %.2f d %g"
     codes = ", ".join(str(byte) for byte in [*text.encode(), 0])
@@ -267,7 +267,7 @@ def test_what_programs_print_in_the_old_way(old: Folder) -> None:
     assert notes[1:] == ["printed at (0, 0): i 7 f 1.50 d -2.5"]
 
 
-def test_payloads_are_as_long_as_they_were_sent(old: Folder) -> None:
+def test_payloads_longer_than_sent_are_reported(old: Folder) -> None:
     name = "_ZN21rti_internal_typeinfo7payloadE[8] = {82, 97, 121, 0, "
     old.write("other.ptx", DATA.read_text().replace(f"{name}16", f"{name}32"))
     text = PROJECT.replace('file="old.ptx" proc="distance"', 'file="other.ptx" proc="distance"')
@@ -314,7 +314,7 @@ def test_python_programs_cannot_be_launched_by_compiled_ones(old: Folder) -> Non
     assert found.message == "pass 'trace': its programs are compiled ones, 'other.py' is none"
 
 
-def test_both_geometry_programs_are_there(old: Folder) -> None:
+def test_a_missing_geometry_program_is_reported(old: Folder) -> None:
     line = '          <optixProgram type="Bounding_Box" file="old.ptx" proc="box" />\n'
     assert line in PROJECT
     old.write("project.xml", PROJECT.replace(line, ""))
@@ -347,7 +347,7 @@ def test_files_of_a_pass_fit_together(old: Folder) -> None:
     assert "'diffuse' is a variable of 12 bytes, in another file of the pass" in found.message
 
 
-def test_the_selective_demo_is_that_of_its_python_twin() -> None:
+def test_the_selective_demo_matches_its_python_twin() -> None:
     """Same mask, same materials, another generator of random numbers: differences are noise. The
     twin's noise is known from two of its renders; pixels are independent."""
 
@@ -383,7 +383,7 @@ def test_the_selective_demo_is_that_of_its_python_twin() -> None:
     assert np.mean(np.abs(z) > 3) < 0.03
 
 
-def test_what_compiled_programs_do_not_follow_is_said(old: Folder) -> None:
+def test_ignored_attributes_are_reported(old: Folder) -> None:
     old.write(
         "project.xml",
         PROJECT.replace("<optixEntryPoint>", '<TARGET_ERROR value="0.1" /><optixEntryPoint>'),

@@ -14,7 +14,7 @@ from PIL import Image
 import nau_py
 from tests.conftest import Folder, pixel_rays
 
-DATA = Path(__file__).parent.parent / "raytrace" / "ptx" / "data" / "room.ptx"
+DATA = Path(__file__).parent.parent / "data" / "room.ptx"
 PROJECT = """\
 <project name="Rooms" width="64" height="48">
   <assets>
@@ -75,13 +75,13 @@ def room(folder: Folder) -> Folder:
 
 
 def seen() -> tuple[np.ndarray, np.ndarray]:
-    """Where the pixels' rays meet the plane z = 0."""
+    """Return the points where the pixels' rays meet the plane z = 0."""
     origin, direction = pixel_rays((64, 48), (0, 0, 3))
     points = origin + 3 * direction
     return points[:, :, 0], points[:, :, 1]
 
 
-def test_what_rays_meet(room: Folder) -> None:
+def test_rays_meet_the_room(room: Folder) -> None:
     frame = nau_py.Renderer(room.load()).render()
     image = frame.targets["L::out"]
     x, y = seen()
@@ -96,7 +96,7 @@ def test_what_rays_meet(room: Folder) -> None:
 
 
 def test_any_hit_lets_through(room: Folder) -> None:
-    """The quad's second triangle (below the diagonal's other side) is no hit: what is behind shows."""
+    """The any-hit program ignores the quad's second triangle, so the geometry behind is visible."""
     far = [(3 * x, 3 * y, -1.0) for x, y, _ in SQUARE]
     room.obj("scene", [("Holed", SQUARE), ("Red", far)])
     image = nau_py.Renderer(room.load()).render().targets["L::out"]
@@ -140,8 +140,8 @@ def test_programs_are_trusted_as_python_ones_are(room: Folder) -> None:
         nau_py.Renderer(room.load(), options=options).render()
 
 
-def test_python_stands_in_where_it_is_asked_for(room: Folder) -> None:
-    """A file of the same name beside it, if the run wants Python programs."""
+def test_python_programs_run_on_request(room: Folder) -> None:
+    """A Python file of the same name runs instead, with the option ``--programs py``."""
     room.write(
         "room.py",
         "import numpy as np\n\n"
@@ -171,7 +171,7 @@ FAULTS = {
         ("__closesthit__loop", "did not end within 1.5 s at launch index ("),
     ],
 )
-def test_a_program_that_faults_or_hangs_costs_its_child_only(
+def test_a_program_that_crashes_or_hangs_ends_its_worker_only(
     room: Folder, proc: str, words: str
 ) -> None:
     text = DATA.read_text()
@@ -199,7 +199,7 @@ def test_a_program_that_faults_or_hangs_costs_its_child_only(
     assert not (room.path / "x.png").exists()
 
 
-def test_the_guarded_run_is_the_run(room: Folder) -> None:
+def test_a_supervised_run_gives_the_same_picture(room: Folder) -> None:
     command = str(Path(sys.executable).parent / "nau-run")
     done = subprocess.run(
         [command, "project.xml", "-o", "x.png", "--quiet"],
@@ -211,21 +211,21 @@ def test_the_guarded_run_is_the_run(room: Folder) -> None:
 
 
 def added(proc: str, body: str) -> str:
-    """The room's module with one more program."""
+    """Return the room's module with one more program."""
     head = f".visible .entry {proc}()\n{{\n\t.reg .b32 %r<9>;\n\t.reg .b64 %rd<9>;\n"
     return DATA.read_text() + head + "\t.reg .f32 %f<9>;\n" + body + "\tret;\n}\n"
 
 
 def only(room: Folder, rule: str) -> list[str]:
-    """Messages of the findings, which all are of one rule."""
+    """Return the messages of all findings, which must be of one rule."""
     found = nau_py.lint(room.load())
     assert {d.rule for d in found} == {rule}, found
     assert all(d.severity == "warning" for d in found)
     return [d.message for d in found]
 
 
-def test_records_are_as_long_as_they_are(room: Folder) -> None:
-    """Byte 112 is beyond; of a record's address, offsets are followed through moves and sums."""
+def test_reads_past_a_record_are_reported(room: Folder) -> None:
+    """Byte 112 is past the end; offsets from a record's address are followed through moves and sums."""
     body = (
         "\tcall (%rd1), _optix_get_sbt_data_ptr_64, ();\n\tcvta.to.global.u64 %rd2, %rd1;\n"
         "\tadd.s64 %rd3, %rd2, 96;\n\tld.global.v2.u32 {%r1, %r2}, [%rd3+12];\n"
@@ -240,7 +240,7 @@ def test_records_are_as_long_as_they_are(room: Folder) -> None:
     assert nau_py.lint(room.load()) == []
 
 
-def test_payloads_are_as_long_as_they_were_sent(room: Folder) -> None:
+def test_payloads_longer_than_sent_are_reported(room: Folder) -> None:
     body = "\tmov.u32 %r1, 5;\n\tcall _optix_set_payload_5, (%r1);\n"
     room.write("room.ptx", added("__closesthit__wide", body))
     room.write("project.xml", PROJECT.replace("__closesthit__diffuse", "__closesthit__wide"))
@@ -251,8 +251,8 @@ def test_payloads_are_as_long_as_they_were_sent(room: Folder) -> None:
     )
 
 
-def test_entries_are_whole(room: Folder) -> None:
-    """What Nau's records would be out of step with, nau_py says, and keeps in step."""
+def test_incomplete_entries_are_reported(room: Folder) -> None:
+    """Entries that would shift Nau's records are reported."""
     miss = '<rtProgram type="MISS" file="room.ptx" proc="__miss__blue" />\n            </rayType>\n'
     end = "          </rtMap>"
     assert f"{miss}{end}" in PROJECT
@@ -270,7 +270,7 @@ def test_entries_are_whole(room: Folder) -> None:
     assert image[24, 32].tolist()[:3] == [204, 102, 51]
 
 
-def test_parameters_lie_where_compilers_look(room: Folder) -> None:
+def test_unaligned_parameters_are_reported(room: Folder) -> None:
     block = (
         '<rtGlobalParams><param name="a" type="RENDERER" context="CURRENT" component="TIMER" />'
         '<param name="b" type="TEXTURE" context="L::out" component="ID" /></rtGlobalParams>'

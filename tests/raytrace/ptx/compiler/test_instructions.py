@@ -53,7 +53,7 @@ M, N = np.repeat(L, len(L)), np.tile(L, len(L))
 
 
 def same_floats(found: Array, wanted: Array, ulps: float = 0.5) -> None:
-    """Equal NaNs, infinities and zeros (by sign); the rest within so many units in the last place."""
+    """NaNs, infinities and signed zeros are equal; the rest within ``ulps`` units in the last place."""
     kind = found.dtype.type
     wanted = wanted.astype(kind)
     nan = np.isnan(wanted)
@@ -238,7 +238,7 @@ def test_shifts_past_the_width(opcode: str, type_: str) -> None:
     ["eq", "ne", "lt", "le", "gt", "ge", "equ", "neu", "ltu", "leu", "gtu", "geu", "num", "nan"],
 )
 def test_float_comparisons(how: str) -> None:
-    """The ordered ones are false with a NaN, those with u are true."""
+    """With a NaN ordered comparisons are false, those with u are true."""
     body = f"setp.{how}.f32 %p1, %a0, %a1; selp.u32 %d, 1, 0, %p1;"
     found = run(body, [("f32", A), ("f32", B)], "u32").astype(bool)
     nan = np.isnan(A) | np.isnan(B)
@@ -343,7 +343,7 @@ def test_bits() -> None:
 
 @pytest.mark.parametrize("type_", ["u32", "s32", "u64"])
 def test_bit_fields(type_: str) -> None:
-    """Places and lengths past the width; of signed fields the sign fills up."""
+    """Positions and lengths past the width; signed fields are extended by their sign."""
     bits, signed = int(type_[1:]), type_[0] == "s"
     values = {"u32": U, "s32": P, "u64": M.view(np.uint64)}[type_][:48]
     begins, lengths = np.array([0, 3, 20, 31, 32, 40, 255]), np.array([0, 1, 5, 16, 32, 64, 255])
@@ -394,7 +394,7 @@ def test_moves_and_vectors() -> None:
 
 
 def test_memory_of_all_widths() -> None:
-    """Signed bytes fill up with their sign, a wide register is cut off when it is stored."""
+    """Signed bytes are extended by their sign; a wide register is cut off when it is stored."""
     small = np.array([0, 1, 127, -128, -1, 77], np.int8)
     assert run("cvt.s32.s16 %d, %a0;", [("s8", small)], "s32").tolist() == small.tolist()
     found = run("st.u32 [%at1], %a0; ld.u32 %d, [%at1];", [("u64", M.view(np.uint64))], "u32")
@@ -402,7 +402,7 @@ def test_memory_of_all_widths() -> None:
 
 
 def test_blocks_have_registers_of_their_own() -> None:
-    """What a block declares shadows what is outside, single registers and numbered ones."""
+    """Declarations of a block shadow outer ones, for single and numbered registers."""
     body = (
         "mov.u32 %i1, 5; mov.u32 %i2, 7;\n"
         "{ .reg .b32 %i1; .reg .b64 %l<3>; mov.u32 %i1, 9; mov.u64 %l2, 1; add.u32 %i2, %i1, %i2; }\n"
@@ -413,8 +413,8 @@ def test_blocks_have_registers_of_their_own() -> None:
     np.testing.assert_array_equal(run(body, {"u32": U}, "u32"), U + np.uint32(100 + 5 + 16))
 
 
-def test_parameters_of_calls_are_as_wide_as_their_block_says() -> None:
-    """The name of a parameter is used again, wider: nothing beside it is written."""
+def test_parameters_of_calls_have_the_width_of_their_block() -> None:
+    """A parameter's name is used again with more bytes: its neighbours are not overwritten."""
     body = (
         "{ .param .b32 param0; st.param.b32 [param0], %a0; ld.param.b32 %i1, [param0]; }\n"
         "{ .param .align 8 .b8 param0[16]; mov.u64 %l1, 77; st.param.v2.b64 [param0], {%l1, %l1};"
@@ -476,8 +476,8 @@ def test_kinds_of_numbers(kind: str, wanted: Array) -> None:
     np.testing.assert_array_equal(found, wanted.astype(np.uint32))
 
 
-def test_atomic_operations_give_what_was_there() -> None:
-    """On memory of each launch index: its output."""
+def test_atomic_operations_return_the_old_value() -> None:
+    """Each launch index has its own memory: its output."""
     body = (
         "st.global.u32 [%at1], %a0; atom.global.inc.u32 %i1, [%at1], 7; ld.global.u32 %i2, [%at1];\n"
         "red.global.max.s32 [%at1], -3; atom.global.cas.b32 %i3, [%at1], %i2, 99;\n"
@@ -507,7 +507,7 @@ def test_doubles_become_floats_by_direction(mode: str) -> None:
 @pytest.mark.parametrize("mode", ["rz", "rm", "rp"])
 @pytest.mark.parametrize("how", ["add", "mul", "div"])
 def test_doubles_that_overflow_round_by_direction(how: str, mode: str) -> None:
-    """The largest number stands for what is less than infinity; what is infinite stays so."""
+    """A finite result that overflows rounds to the largest number; infinity stays infinite."""
     big = np.array([1.7e308, -1.7e308, np.inf, 1.0, 1.7e308])
     other = {"add": big, "mul": np.full(5, 10.0), "div": np.array([0.1, 0.1, 0.1, 0.0, 0.0])}[how]
     most = np.finfo(np.float64).max

@@ -1,7 +1,7 @@
-"""The device interface of OptiX 7 and 8 beyond what Nau's programs ask for. ``data/new.cu`` asks.
+"""Calls of OptiX 7 and 8 that Nau's own programs do not use; ``data/new.cu`` has the programs.
 
-``data/optix9.npz``: what real OptiX 9 wrote for the same launches on an NVIDIA H200, words of 32 bits;
-the depth that is left was not asked there, it stands as 0.
+``data/optix9.npz``: results of real OptiX 9 for the same launches on an NVIDIA H200, words of 32
+bits. The remaining depth was not read there and is 0 in the file.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from nau_py.raytrace.tracing.accelerator import CustomGeometry, build_groups
 
 COUNT = 33
 X = np.arange(COUNT) / 16 - 1
-"""Where the launch indices' rays meet the plane z = 0, at y = 0.25."""
+"""x of the rays' intersections with the plane z = 0, at y = 0.25, by launch index."""
 POSITIONS = np.array(
     [(-0.5, -0.5, 0, 1), (0.5, -0.5, 0, 1), (0.5, 0.5, 0, 1), (-0.5, 0.5, 0, 1)], np.float32
 )
@@ -44,7 +44,7 @@ Array = np.ndarray[Any, Any]
 
 @pytest.fixture(scope="module")
 def native() -> NativeModule:
-    text = (Path(__file__).parent / "data" / "new.ptx").read_text()
+    text = (Path(__file__).parent.parent / "data" / "new.ptx").read_text()
     return NativeModule(compile_module(read_ptx(text)))
 
 
@@ -56,7 +56,7 @@ def launch(
     exception: str = "",
     callables: tuple[str, ...] = (),
 ) -> tuple[Array, PtxLaunchResult]:
-    """What the launch indices write, float32 (n, 4), for a square in the plane z = 0."""
+    """Return the output of each launch index, float32 (n, 4), for a square in the plane z = 0."""
     scene = RtScene([TriangleGroup("m", {"position": POSITIONS}, TRIANGLES)])
     hits = scene.make_records([[(native.address(closest), 0)]], [RecordMaterial()], ["position"])
     return _run(native, generate, scene.handle, hits, miss, exception, callables)
@@ -94,7 +94,7 @@ def _run(
 
 
 def test_typed_payloads_of_32_words(native: NativeModule) -> None:
-    """Words go down with the ray and come back; front and back faces are told apart."""
+    """Words go down with the ray and come back; front and back faces differ."""
     out, done = launch(native, "__raygen__typed", "__closesthit__typed", "__miss__typed")
     np.testing.assert_array_equal(
         out[FIRST], np.tile([100 + 254, 200, 300 + 19 - 1, 20], (FIRST.sum(), 1))
@@ -108,7 +108,7 @@ def test_typed_payloads_of_32_words(native: NativeModule) -> None:
 
 
 def test_corners_and_attributes_of_triangles(native: NativeModule) -> None:
-    """Barycentrics weigh the corners to where the ray is; they are the first two attributes."""
+    """Barycentric coordinates weight the corners; they are the first two attributes."""
     out, _ = launch(native, "__raygen__corners", "__closesthit__corners")
     np.testing.assert_allclose(out[INSIDE][:, 0], X[INSIDE], atol=1e-6)
     np.testing.assert_allclose(out[INSIDE][:, 1], 0.25, atol=1e-6)
@@ -116,12 +116,12 @@ def test_corners_and_attributes_of_triangles(native: NativeModule) -> None:
 
 
 def real(name: str) -> Array:
-    with np.load(Path(__file__).parent / "data" / "optix9.npz") as found:
+    with np.load(Path(__file__).parent.parent / "data" / "optix9.npz") as found:
         return np.asarray(found[name])
 
 
 SURE = (np.abs(np.abs(X) - 0.5) > 0.01) & (np.abs(X - 0.25) > 0.01)
-"""Not at the edges of the triangles, where either may be hit."""
+"""Excludes the edges of the triangles, where either triangle may be hit."""
 
 
 @pytest.mark.parametrize(
@@ -136,7 +136,7 @@ SURE = (np.abs(np.abs(X) - 0.5) > 0.01) & (np.abs(X - 0.25) > 0.01)
     ],
 )
 def test_as_real_optix(native: NativeModule, name: str, programs: tuple[str, ...]) -> None:
-    """To the bit, but for the depth that is left."""
+    """Bits are equal, except for the remaining depth."""
     out, _ = launch(native, *programs)
     if name != "corners":
         hit = SURE & INSIDE & (name == "typed")
@@ -175,8 +175,8 @@ def test_callable_programs(native: NativeModule) -> None:
 
 
 def test_intersection_programs_report_kind_and_attributes(native: NativeModule) -> None:
-    """A square of the program's own; the any-hit program lets its right half through, where a second
-    square behind it is hit."""
+    """The program describes a square. Its any-hit program ignores the right half, where rays hit a
+    second square behind."""
     hits = record_table(1, DATA.itemsize)
     for kind, name in (
         ("closest", "__closesthit__square"),

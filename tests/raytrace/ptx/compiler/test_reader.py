@@ -1,4 +1,4 @@
-"""PTX text: what is read, where errors are, and that broken texts end in messages."""
+"""Reading of PTX text: modules, lines of errors, and messages for broken texts."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from nau_py.raytrace.ptx.optix.variables import VariableLayout, declared_variabl
 from nau_py.raytrace.ptx.runtime.native import NativeError, NativeModule
 from tests.raytrace.ptx.bench import HEAD, source
 
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).parent.parent / "data"
 ROOM = (DATA / "room.ptx").read_text()
 HEAD_END = ".address_size 64\n"
 TEXTS = (ROOM, (DATA / "old.ptx").read_text(), ROOM, (DATA / "new.ptx").read_text())
@@ -71,7 +71,7 @@ def test_declarations_and_initial_values() -> None:
         (HEAD + ".visible .entry f()\n{\n\tmov.u32 %r1, {1;\n}\n", 7, "a bracket is not closed"),
     ],
 )
-def test_what_cannot_be_read(broken: str, line: int, words: str) -> None:
+def test_errors_have_their_line(broken: str, line: int, words: str) -> None:
     with pytest.raises(PtxError, match=words) as found:
         read_ptx(broken)
     assert found.value.line == line
@@ -96,7 +96,7 @@ def test_what_cannot_be_read(broken: str, line: int, words: str) -> None:
         ("add %d, %a0, %a0;", "the instruction names no type"),
     ],
 )
-def test_what_is_not_supported_is_named(body: str, words: str) -> None:
+def test_unsupported_instructions_are_named(body: str, words: str) -> None:
     text = source(body, ["u32"], "u32")
     _, errors = compile_all(read_ptx(text))
     assert len(errors) == 1
@@ -107,7 +107,7 @@ def test_what_is_not_supported_is_named(body: str, words: str) -> None:
 
 
 def mutated(text: str, chance: random.Random) -> str:
-    """A text with something cut, doubled, exchanged or thrown in."""
+    """Return a text with a part removed, repeated, exchanged or inserted."""
     at, to = sorted(chance.randrange(len(text)) for _ in range(2))
     to = min(to, at + chance.randrange(1, 60))
     kind = chance.randrange(5)
@@ -124,7 +124,7 @@ def mutated(text: str, chance: random.Random) -> str:
 
 
 def survives(text: str, chance: random.Random, native: bool) -> None:
-    """Broken text ends in a message, or is compiled; never in anything else."""
+    """Broken text gives a message or is compiled, and raises nothing else."""
     said: list[PtxError] = []
     made = ""
     try:
@@ -154,7 +154,7 @@ def test_a_hundred_thousand_broken_texts() -> None:
 
 
 def test_machine_code_is_kept_and_checked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The second time it comes from the file; one that is not whole is not taken."""
+    """The second time the code comes from the file; a damaged file is ignored."""
     monkeypatch.setattr("nau_py.raytrace.ptx.runtime.native.cache_folder", lambda: str(tmp_path))
     text = compile_module(read_ptx(ROOM))
     assert NativeModule(text).address("__miss__blue")
@@ -168,7 +168,7 @@ def test_machine_code_is_kept_and_checked(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_only_old_modules_have_bound_variables() -> None:
-    """A byte of memory of its own looks like a buffer of OptiX 6; of OptiX 7 it is what it is."""
+    """A variable of one byte is a buffer in OptiX 6, and plain memory in OptiX 7."""
     byte = ".global .align 1 .b8 flag[1];\n"
     assert declared_variables(read_ptx(ROOM.replace(HEAD_END, HEAD_END + byte))) == {}
     old = declared_variables(read_ptx((DATA / "old.ptx").read_text() + byte))

@@ -14,7 +14,7 @@ Array = np.ndarray[Any, Any]
 
 
 def fetch(image: Image, dimensions: int, points: Array) -> Array:
-    """RGBA float32 (n, 4) at points (n, 3)."""
+    """Sample a texture at points (n, 3). Returns RGBA float32 (n, 4)."""
     kinds = [ctypes.c_uint64, ctypes.c_int32, *[ctypes.c_float] * 3, ctypes.c_uint64]
     ask = ctypes.CFUNCTYPE(None, *kinds)(sampler_address())
     out = np.zeros((len(points), 4), np.float32)
@@ -61,7 +61,7 @@ def test_pictures_of_bytes_are_read_between_texels() -> None:
     )
 
 
-def test_the_last_texel_goes_on_where_it_is_clamped() -> None:
+def test_clamped_coordinates_repeat_the_last_texel() -> None:
     """By axis: the first one clamped, the second one repeated."""
     texels = np.arange(12, dtype=np.float32).reshape(3, 4, 1)
     image = Image(texels, linear=False, clamp=(True, False))
@@ -81,7 +81,7 @@ def test_coordinates_that_count_texels() -> None:
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf, 1e30])
-def test_coordinates_that_are_no_place_give_nothing(value: float) -> None:
+def test_coordinates_that_are_not_finite_give_zero(value: float) -> None:
     image = Image(np.full((2, 2, 4), 255, np.uint8))
     assert (fetch(image, 2, np.array([[0.5, value, 0.0]])) == 0).all()
     assert (fetch(image, 3, np.array([[0.5, 0.5, 0.0]])) == 0).all()  # it is no volume

@@ -1,6 +1,7 @@
-"""Ordinary arithmetic as nvcc compiles it, against what an NVIDIA H200 computed from the same PTX.
+"""Arithmetic as nvcc compiles it, against results of an NVIDIA H200 for the same PTX.
 
-``data/instructions.cu`` has a kernel an expression; ``on_gpu.py`` ran them and left ``h200.npz``.
+``data/instructions.cu`` has one kernel per expression; ``on_gpu.py`` ran them and wrote
+``h200.npz``.
 """
 
 from __future__ import annotations
@@ -18,14 +19,14 @@ from nau_py.raytrace.ptx.runtime.launch import PtxLaunch, record_table, run_laun
 from nau_py.raytrace.ptx.runtime.native import NativeModule
 from tests.raytrace.ptx.on_gpu import COUNT, ORDER, OUTPUTS, inputs
 
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).parent.parent / "data"
 MODULE = read_ptx((DATA / "instructions.ptx").read_text())
 NAMES = [function.name for function in MODULE.functions.values() if function.entry]
 APPROXIMATE = (
     "sinh", "exp2", "rsqrt", "tanh", "tan", "asin", "acos", "atan", "exp", "cbrt", "cosh", "erf",
     "lgamma", "tgamma",
 )  # fmt: skip
-"""Functions over ``ex2.approx`` and the like, which are exact here: a few units in the last place."""
+"""Approximate functions, which are exact here, with a tolerance in units in the last place."""
 ULPS = 3
 Array = np.ndarray[Any, Any]
 
@@ -50,7 +51,7 @@ def test_all_kernels_ran_on_the_card(card: dict[str, Array]) -> None:
 def test_as_on_the_card(
     module: tuple[PtxModule, NativeModule], card: dict[str, Array], name: str
 ) -> None:
-    """To the bit, but for approximate functions; NaN where the card has NaN."""
+    """Bits are equal except for approximate functions; NaN where the card has NaN."""
     text, native = module
     given = inputs()
     written = {letter: np.zeros(COUNT, type_) for letter, type_ in OUTPUTS.items()}
