@@ -53,8 +53,8 @@ def check_contracts(
                 yield error(
                     "T008",
                     pass_.location,
-                    f"raytrace pass '{pass_.name}' has no {kind} program, without which programs "
-                    "of OptiX 3 to 6 meet nothing",
+                    f"raytrace pass '{pass_.name}' has no {kind} program: programs of OptiX 3 "
+                    "to 6 need one to hit geometry",
                 )
         return
     yield from _check_records(pass_, used)
@@ -113,7 +113,7 @@ def _check_payloads(pass_: RaytracePass, used: list[UsedCode]) -> Iterator[Diagn
             yield warning(
                 "T021",
                 program.where("proc"),
-                f"{label} uses word {uses.payload - 1} of the payload, rays are sent with {most}",
+                f"{label} uses word {uses.payload - 1} of the payload, but rays carry {most} words",
             )
 
 
@@ -131,8 +131,8 @@ def _check_old_payloads(pass_: RaytracePass, used: list[UsedCode]) -> Iterator[D
                 yield warning(
                     "T021",
                     program.where("proc"),
-                    f"{_label(pass_, program)} has a payload '{name}' of {size} bytes, rays are "
-                    f"sent with {most}",
+                    f"{_label(pass_, program)} has a payload '{name}' of {size} bytes, but rays "
+                    f"carry {most}",
                 )
 
 
@@ -148,7 +148,7 @@ def _check_entries(pass_: RaytracePass) -> Iterator[Diagnostic]:
                 "T022",
                 entry.location,
                 f"pass '{pass_.name}': material '{entry.to}' has no entry for ray type {listed}: "
-                "such rays pass nothing on from it; Nau's records would be out of step behind it",
+                "such rays run no program on it; in Nau the records behind it would be shifted",
             )
         for name in has:
             wanted = default.program(name or "", MISS) if default else None
@@ -157,7 +157,7 @@ def _check_entries(pass_: RaytracePass) -> Iterator[Diagnostic]:
                     "T022",
                     entry.location,
                     f"pass '{pass_.name}': material '{entry.to}' has no miss program of ray type "
-                    f"'{name}': where its geometry comes first, by name, misses have none",
+                    f"'{name}': if its geometry is the first by name, misses run no program",
                 )
 
 
@@ -170,7 +170,7 @@ def _check_parameters(project: Project, pass_: RaytracePass) -> Iterator[Diagnos
             yield warning(
                 "T023",
                 node.location,
-                f"pass '{pass_.name}': parameter '{node.name}' has 8 bytes and lies at byte {at} "
-                "of the block, where nothing is aligned: compilers look for it at a multiple of 8",
+                f"pass '{pass_.name}': parameter '{node.name}' has 8 bytes and is at byte {at} of "
+                "the block, which has no alignment: compilers expect it at a multiple of 8",
             )
         at += size

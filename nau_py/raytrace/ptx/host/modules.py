@@ -63,7 +63,7 @@ def check_modules(pass_: RaytracePass, modules: Modules, folder: Path) -> Iterat
         if path in seen:
             continue
         if program.file and path.suffix.lower() != COMPILED:
-            text = f"{label}: its programs are compiled ones, '{program.file}' is none"
+            text = f"{label}: '{program.file}' is no compiled program, as its others are"
             yield error("T015", where, text)
         elif module is not None:
             for line, text in _list_errors(module):

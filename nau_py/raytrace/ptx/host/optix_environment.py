@@ -201,8 +201,8 @@ class OptixEnvironment(LaunchEnvironment):
         if not count:
             return []
         return [
-            f"{count} of {len(self.kinds)} geometries are what their own programs say, no "
-            "triangles: rays ask them at each box"
+            f"{count} of {len(self.kinds)} geometries are user geometry of their "
+            "programs, not triangles: an intersection program runs for each box that a ray meets"
         ]
 
     def find_nonfinite(self) -> NDArray[np.int64]:

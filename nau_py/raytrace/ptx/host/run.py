@@ -94,8 +94,8 @@ class PtxPrograms:
         notes = environment.notes() + _list_texts(done, frame.width)
         if frame.effects not in (AUTO, ALL):
             notes.append(
-                f"compiled programs say themselves which rays they send: effects "
-                f"'{frame.effects}' leave nothing out here"
+                f"effects '{frame.effects}' leave nothing out here: compiled programs decide "
+                "themselves which rays they trace"
             )
         if done.thrown:
             _report_exceptions(pass_, frame, done)

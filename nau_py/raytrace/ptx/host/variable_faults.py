@@ -101,6 +101,6 @@ def _check_variable(
         yield warning(
             "T018",
             program.where("proc"),
-            f"{label}: its variable '{name}' has {variable.size} bytes, what the pass sets has "
-            f"{size}; the rest is {'0' if size < variable.size else 'left out'}",
+            f"{label}: its variable '{name}' has {variable.size} bytes, the value of the pass "
+            f"has {size}; the rest is {'0' if size < variable.size else 'ignored'}",
         )

@@ -137,7 +137,7 @@ def test_user_geometry_of_programs(old: Folder) -> None:
     frame = render(old)
     out = frame.targets["L::out"]
     (note,) = frame.report["frames"][0]["passes"][1]["notes"]
-    assert note.startswith("2 of 2 geometries are what their own programs say")
+    assert note.startswith("2 of 2 geometries are user geometry of their programs")
     red, _ = spheres((-1.0, 0.0, 0.0))
     green, _ = spheres((0.8, 0.3, -1.0))
     of_red = red < np.where(np.isnan(green), np.inf, green)
@@ -275,8 +275,8 @@ def test_payloads_longer_than_sent_are_reported(old: Folder) -> None:
     (found,) = nau_py.lint(old.load())
     assert (found.rule, found.severity) == ("T021", "warning")
     assert found.message == (
-        "pass 'trace': program 'distance' of 'other.ptx' has a payload 'payload' of 32 bytes, rays "
-        "are sent with 16"
+        "pass 'trace': program 'distance' of 'other.ptx' has a payload 'payload' of 32 bytes, but "
+        "rays carry 16"
     )
 
 
@@ -296,7 +296,7 @@ def test_lint_knows_the_variables(old: Folder) -> None:
     (found,) = nau_py.lint(old.load())
     assert found.rule == "T018"
     assert (
-        "its variable 'diffuse' has 16 bytes, what the pass sets has 4; the rest is 0"
+        "its variable 'diffuse' has 16 bytes, the value of the pass has 4; the rest is 0"
         in found.message
     )
     old.write("project.xml", PROJECT.replace('proc="box"', 'proc="boxes"'))
@@ -311,7 +311,7 @@ def test_python_programs_cannot_be_launched_by_compiled_ones(old: Folder) -> Non
     old.write("project.xml", text)
     (found,) = nau_py.lint(old.load())
     assert found.rule == "T015"
-    assert found.message == "pass 'trace': its programs are compiled ones, 'other.py' is none"
+    assert found.message == "pass 'trace': 'other.py' is no compiled program, as its others are"
 
 
 def test_a_missing_geometry_program_is_reported(old: Folder) -> None:

@@ -246,8 +246,8 @@ def test_payloads_longer_than_sent_are_reported(room: Folder) -> None:
     room.write("project.xml", PROJECT.replace("__closesthit__diffuse", "__closesthit__wide"))
     (said,) = only(room, "T021")
     assert said == (
-        "pass 'trace': program '__closesthit__wide' of 'room.ptx' uses word 5 of the payload, rays "
-        "are sent with 2"
+        "pass 'trace': program '__closesthit__wide' of 'room.ptx' uses word 5 of the payload, but "
+        "rays carry 2 words"
     )
 
 
@@ -259,12 +259,12 @@ def test_incomplete_entries_are_reported(room: Folder) -> None:
     room.write("project.xml", PROJECT.replace(f"{miss}{end}", f"</rayType>\n{end}"))
     (said,) = only(room, "T022")
     assert said.startswith(
-        "pass 'trace': material 'Holed*' has no miss program of ray type 'Radiance': where its"
+        "pass 'trace': material 'Holed*' has no miss program of ray type 'Radiance': if its"
     )
     two = '<rayType name="Radiance" /><rayType name="Shadow" /></rtRayTypes>'
     room.write("project.xml", PROJECT.replace('<rayType name="Radiance" /></rtRayTypes>', two))
     assert only(room, "T022")[0].startswith(
-        "pass 'trace': material 'Holed*' has no entry for ray type 'Shadow': such rays pass nothing"
+        "pass 'trace': material 'Holed*' has no entry for ray type 'Shadow': such rays run no"
     )
     image = nau_py.Renderer(room.load()).render().targets["L::out"]
     assert image[24, 32].tolist()[:3] == [204, 102, 51]
@@ -277,4 +277,4 @@ def test_unaligned_parameters_are_reported(room: Folder) -> None:
     )
     room.write("project.xml", PROJECT.replace("<rtEntryPoint>", f"{block}<rtEntryPoint>"))
     (said,) = [d.message for d in nau_py.lint(room.load()) if d.rule == "T023"]
-    assert "parameter 'b' has 8 bytes and lies at byte 4 of the block" in said
+    assert "parameter 'b' has 8 bytes and is at byte 4 of the block" in said
