@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nau_py.raytrace.ptx.compiler.handler import Handler, type_in
+from nau_py.raytrace.ptx.compiler.handler import Handler, clamp_unit, type_in
 from nau_py.raytrace.ptx.compiler.literals import float_text, is_float, is_signed, llvm_type
 from nau_py.raytrace.ptx.compiler.module import SIZES
 from nau_py.raytrace.ptx.compiler.rounding import round_result
@@ -10,13 +10,8 @@ from nau_py.raytrace.ptx.compiler.writer import FunctionWriter
 
 
 def _saturate(w: FunctionWriter, words: list[str], value: str, type_: str) -> str:
-    """Clamp a float to 0..1 where the opcode has ``.sat``. NaN gives 0."""
-    if "sat" not in words:
-        return value
-    t = llvm_type(type_)
-    n = type_[1:]
-    low = w.value(f"call {t} @llvm.maxnum.f{n}({t} {value}, {t} 0.0)")
-    return w.value(f"call {t} @llvm.minnum.f{n}({t} {low}, {t} 1.0)")
+    """Clamp a float to 0..1 where the opcode has ``.sat``."""
+    return clamp_unit(w, value, type_) if "sat" in words else value
 
 
 def _make_binary(integer: str) -> Handler:

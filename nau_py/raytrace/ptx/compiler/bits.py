@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from nau_py.raytrace.ptx.compiler.handler import Handler, type_in
+from nau_py.raytrace.ptx.compiler.handler import Handler, clamp_unit, type_in
 from nau_py.raytrace.ptx.compiler.literals import is_float, is_signed, llvm_type
 from nau_py.raytrace.ptx.compiler.module import SIZES
 from nau_py.raytrace.ptx.compiler.rounding import narrow_float, round_integer, rounding_mode
@@ -160,7 +160,7 @@ def write_cvt(w: FunctionWriter, words: list[str], operands: tuple[str, ...]) ->
             made = round_integer(w, mode, value, whole, signed, to)
         else:
             made = w.value(f"{'s' if signed else 'u'}itofp {whole} {value} to {llvm_type(to)}")
-        made = _clamp_unit(w, made, to) if "sat" in words else made
+        made = clamp_unit(w, made, to) if "sat" in words else made
     else:
         made = _convert_integer(w, value, source, to, "sat" in words)
     w.write(operands[0], made, to)
@@ -178,7 +178,7 @@ def _convert_half(
         w.write(operands[0], w.value(f"fpext half {half} to {llvm_type(to)}"), to)
         return
     value = w.read(operands[1], source)
-    value = _clamp_unit(w, value, source) if "sat" in words else value
+    value = clamp_unit(w, value, source) if "sat" in words else value
     half = w.value(f"fptrunc {llvm_type(source)} {value} to half")
     w.write(operands[0], w.value(f"bitcast half {half} to i16"), "b16")
 
@@ -200,13 +200,7 @@ def _convert_float(
     elif source != to:
         how = "fpext" if SIZES[to] > SIZES[source] else "fptrunc"
         value = w.value(f"{how} {llvm_type(source)} {value} to {llvm_type(to)}")
-    return _clamp_unit(w, value, to) if "sat" in words else value
-
-
-def _clamp_unit(w: FunctionWriter, value: str, type_: str) -> str:
-    t = llvm_type(type_)
-    low = w.value(f"call {t} @llvm.maxnum.{type_}({t} {value}, {t} 0.0)")
-    return w.value(f"call {t} @llvm.minnum.{type_}({t} {low}, {t} 1.0)")
+    return clamp_unit(w, value, to) if "sat" in words else value
 
 
 def _convert_to_integer(w: FunctionWriter, value: str, source: str, to: str, rounding: str) -> str:
