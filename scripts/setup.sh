@@ -40,7 +40,7 @@ make_environment() { # make_environment EXTRAS
 }
 
 has_opengl() {
-    opengl_problem=$(.venv/bin/python -c 'from nau_py.raster.device import device; device()' 2>&1)
+    opengl_problem=$(.venv/bin/python -c 'from nau_py.raster.device import get_device; get_device()' 2>&1)
 }
 
 make_opengl() {
