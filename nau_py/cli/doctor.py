@@ -38,9 +38,13 @@ def examine() -> int:
         print(f"OpenGL      missing: {problem.diagnostics[0].message}")
         status = 1
     try:
-        from nau_py.raytrace.tracing.accelerator import embree_version
+        from nau_py.raytrace.tracing.accelerator import ISA_VARIABLE, embree_isa, embree_version
 
-        print(f"Embree      {embree_version()}, embreex {_version('embreex')}")
+        isa = f"{embree_isa()} ({ISA_VARIABLE} holds it to another instruction set)"
+        print(f"Embree      {embree_version()}, embreex {_version('embreex')}, {isa}")
+    except DeviceError as problem:
+        print(f"Embree      {problem.diagnostics[0].message}")
+        status = 1
     except ImportError as problem:
         print(f"Embree      missing: {problem}; pip install embreex")
         status = 1

@@ -16,6 +16,15 @@ D101 = rule(
     "a machine without libegl1",
     "apt-get install libegl1 libgl1 libgl1-mesa-dri",
 )
+D102 = rule(
+    "D102",
+    ERROR,
+    "No such instruction set",
+    "The environment variable NAU_EMBREE_ISA holds Embree to one instruction set. It must be one "
+    "of Embree's names, and the processor must have it.",
+    "NAU_EMBREE_ISA=sse2",
+    "NAU_EMBREE_ISA=avx2",
+)
 E001 = rule(
     "E001",
     ERROR,

@@ -8,6 +8,7 @@ Scenes are always built as robust; in an empty scene every ray misses; Embree ge
 from __future__ import annotations
 
 import ctypes
+import os
 import weakref
 from collections.abc import Sequence
 from ctypes import c_char_p, c_int, c_size_t, c_ssize_t, c_uint, c_void_p
@@ -21,6 +22,10 @@ import llvmlite.binding
 import numpy as np
 from numpy.typing import NDArray
 
+from nau_py.diagnostics.diagnostic import error
+from nau_py.diagnostics.errors import DeviceError
+from nau_py.diagnostics.location import NOWHERE
+from nau_py.diagnostics.suggest import suggest_name
 from nau_py.raytrace.kernels.core.tables import SCENE
 from nau_py.raytrace.kernels.intersect.ray_arrays import find_occluded_rays, intersect_rays
 from nau_py.raytrace.tracing.arrays import F32, Mask
@@ -28,6 +33,10 @@ from nau_py.raytrace.tracing.geometry import RayGeometry
 
 NO_HIT = -1
 _VERSION_PROPERTY = 0  # RTC_DEVICE_PROPERTY_VERSION of rtcore_device.h
+_RAY8_PROPERTY, _RAY16_PROPERTY = 33, 34  # RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED, …RAY16…
+ISA_VARIABLE = "NAU_EMBREE_ISA"
+"""Environment variable that holds Embree to an instruction set (docs/performance.md)."""
+ISA_NAMES = ("sse4.2", "avx", "avx2", "avx512")
 _TRIANGLES, _USER = 0, 120  # rtcore_geometry.h
 _INDEX, _VERTEX = 0, 1  # rtcore_buffer.h
 _UINT3, _FLOAT3 = 0x5003, 0x9003  # rtcore_common.h
@@ -76,9 +85,38 @@ def load_embree() -> None:
     _load_library()
 
 
+def read_isa_limit() -> str:
+    """Return the instruction set that ``NAU_EMBREE_ISA`` holds Embree to; empty for the best one.
+
+    Raises :class:`~nau_py.DeviceError` for a name that Embree does not have.
+    """
+    name = os.environ.get(ISA_VARIABLE, "").strip().lower()
+    if name and name not in ISA_NAMES:
+        message = f"{ISA_VARIABLE} is '{name}'; one of {', '.join(ISA_NAMES)} is expected"
+        raise DeviceError(error("D102", NOWHERE, message + suggest_name(name, list(ISA_NAMES))))
+    return name
+
+
 @lru_cache(maxsize=1)
 def _open_device() -> int:
-    return int(_load_library().rtcNewDevice(None))
+    """Return the handle of the process's Embree device.
+
+    Raises :class:`~nau_py.DeviceError` where the processor lacks the instruction set asked for.
+    """
+    limit = read_isa_limit()
+    found = _load_library().rtcNewDevice(f"isa={limit}".encode() if limit else None)
+    if not found:
+        message = f"this processor cannot run Embree with the instruction set '{limit or 'best'}'"
+        raise DeviceError(error("D102", NOWHERE, message))
+    return int(found)
+
+
+def embree_isa() -> str:
+    """Return the instruction set that Embree uses: ``avx512``, ``avx`` (or AVX2), or ``sse``."""
+    properties = _load_library().rtcGetDeviceProperty
+    if properties(_open_device(), _RAY16_PROPERTY):
+        return "avx512"
+    return "avx" if properties(_open_device(), _RAY8_PROPERTY) else "sse"
 
 
 def embree_version() -> str:

@@ -136,13 +136,20 @@ SURE = (np.abs(np.abs(X) - 0.5) > 0.01) & (np.abs(X - 0.25) > 0.01)
     ],
 )
 def test_as_real_optix(native: NativeModule, name: str, programs: tuple[str, ...]) -> None:
-    """Bits are equal, except for the remaining depth."""
+    """Bits are equal, except for the remaining depth, and for points made of Embree's barycentrics:
+    their last bits depend on the processor's instruction set, those of OptiX on the card."""
     out, _ = launch(native, *programs)
-    if name != "corners":
+    expected = real(name)
+    if name == "corners":
+        points = expected[:, :2].view(np.float32)[INSIDE & SURE]
+        ulp = np.spacing(np.float32(0.5))  # of the largest coordinate
+        np.testing.assert_allclose(out[INSIDE & SURE, :2], points, rtol=0, atol=2 * ulp)
+        out.view(np.uint32)[INSIDE, :2] = expected[INSIDE, :2]
+    else:
         hit = SURE & INSIDE & (name == "typed")
         out[hit, 2] -= 19
         out[SURE & (out[:, 0] != -1), 3] -= 20
-    np.testing.assert_array_equal(out.view(np.uint32)[SURE], real(name)[SURE])
+    np.testing.assert_array_equal(out.view(np.uint32)[SURE], expected[SURE])
 
 
 def test_exceptions_unwind_to_their_program(native: NativeModule) -> None:
