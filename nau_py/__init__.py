@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from nau_py.api import lint, load, plan
@@ -63,7 +64,5 @@ _LAZY = {
 def __getattr__(name: str) -> Any:
     """Import the modules that run projects at first use, so that linting starts fast."""
     if name in _LAZY:
-        from importlib import import_module
-
         return getattr(import_module(_LAZY[name]), name)
     raise AttributeError(f"module 'nau_py' has no attribute '{name}'")

@@ -5,8 +5,10 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 
+import networkx
 import pytest
 
 import nau_py
@@ -16,11 +18,36 @@ FOUNDATION = {"diagnostics", "syntax", "process", "plugins", "version"}
 """Rooms and modules that any room may import, except those of ``STRICT``."""
 STRICT: dict[str, set[str]] = {
     "diagnostics": set(),
+    "process": {"diagnostics"},
+    "syntax": {"diagnostics", "process"},
     "model": {"diagnostics", "syntax", "plugins"},
 }
 """Room to the part of the foundation that it may import."""
-REPEATED_CLASSES = {"Style"}
-"""Class names that are used twice until they are renamed."""
+HEAVY = {
+    "OpenEXR",
+    "OpenGL",
+    "PIL",
+    "assimp_py",
+    "embreex",
+    "flip_evaluator",
+    "jinja2",
+    "llvmlite",
+    "lupa",
+    "lxml",
+    "matplotlib",
+    "moderngl",
+    "networkx",
+    "numba",
+    "psutil",
+    "pygls",
+    "rich",
+    "starlette",
+    "uvicorn",
+}
+"""Packages that take long to import. Only they, and modules that need them, may be imported inside
+a function: ``nau-lint`` and ``import nau_py`` start without them."""
+NOT_EVERYWHERE = {"resource"}
+"""Modules of the standard library that some systems lack."""
 ARROWS = {
     "diagnostics": set(),
     "syntax": set(),
@@ -56,7 +83,6 @@ ARROWS = {
     "effects": {"model", "raytrace/programs"},
     "passes": {
         "raster",
-        "raytrace/kernels",
         "raytrace/programs",
         "raytrace/ptx/host",
         "raytrace/selection",
@@ -205,13 +231,90 @@ def test_class_names_are_unique() -> None:
             if isinstance(node, ast.ClassDef):
                 found.setdefault(node.name, []).append(str(path.relative_to(PACKAGE)))
     repeated = {name: files for name, files in found.items() if len(files) > 1}
-    assert set(repeated) <= REPEATED_CLASSES, repeated
+    assert not repeated
+
+
+def count_lines(paths: Iterable[Path]) -> int:
+    return sum(len(path.read_text().splitlines()) for path in paths)
 
 
 def test_modules_are_small() -> None:
-    lengths = sorted(len(p.read_text().splitlines()) for p in PACKAGE.rglob("*.py"))
-    assert lengths[-1] <= 500
-    assert lengths[len(lengths) // 2] < 200
+    lengths = {path: count_lines([path]) for path in PACKAGE.rglob("*.py")}
+    assert not {path: n for path, n in lengths.items() if n > 400}
+    assert sorted(lengths.values())[len(lengths) // 2] < 200
+
+
+def test_rooms_are_small() -> None:
+    """No room holds more than a tenth of the code."""
+    whole = count_lines(PACKAGE.rglob("*.py"))
+    sizes: dict[str, int] = {}
+    for path in PACKAGE.rglob("*.py"):
+        name = room(list(path.relative_to(PACKAGE).parts))
+        sizes[name] = sizes.get(name, 0) + count_lines([path])
+    assert not {name: size for name, size in sizes.items() if size > whole / 10}
+
+
+class Imports:
+    """Modules that one module imports, as dotted names."""
+
+    def __init__(self, tree: ast.Module, modules: set[str]) -> None:
+        self.modules = modules
+        inside = (ast.FunctionDef, ast.AsyncFunctionDef)
+        functions = [node for node in ast.walk(tree) if isinstance(node, inside)]
+        self.local = {name for node in functions for name in self.names(node)}
+        types = [
+            node
+            for node in ast.walk(tree)
+            if isinstance(node, ast.If) and getattr(node.test, "id", "") == "TYPE_CHECKING"
+        ]
+        self.all = self.names(tree)
+        typed = {name for node in types for name in self.names(node)}
+        self.at_start = self.all - self.local - typed
+
+    def names(self, tree: ast.AST) -> set[str]:
+        found: set[str] = set()
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Import):
+                found |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module:
+                for alias in node.names:
+                    whole = f"{node.module}.{alias.name}"
+                    found.add(whole if whole in self.modules else node.module)
+        return found
+
+
+@pytest.fixture(scope="module")
+def package_imports() -> dict[str, Imports]:
+    """Return the imports of every module of the package, by its dotted name."""
+    names = {}
+    for path in PACKAGE.rglob("*.py"):
+        parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
+        names[".".join(parts).removesuffix(".__init__")] = path
+    return {name: Imports(ast.parse(path.read_text()), set(names)) for name, path in names.items()}
+
+
+def test_modules_import_each_other_without_circles(package_imports: dict[str, Imports]) -> None:
+    """Imports inside functions and those for types alone count."""
+    graph: networkx.DiGraph[str] = networkx.DiGraph()
+    for name, found in package_imports.items():
+        graph.add_edges_from((name, other) for other in found.all if other in package_imports)
+    circles = [part for part in networkx.strongly_connected_components(graph) if len(part) > 1]
+    assert not circles
+
+
+def test_only_heavy_modules_are_imported_inside_functions(
+    package_imports: dict[str, Imports],
+) -> None:
+    graph: networkx.DiGraph[str] = networkx.DiGraph()
+    for name, found in package_imports.items():
+        graph.add_node(name)
+        for other in found.at_start:
+            graph.add_edge(name, other if other in package_imports else other.partition(".")[0])
+    for name, found in package_imports.items():
+        for other in found.local - NOT_EVERYWHERE:
+            top = other if other in package_imports else other.partition(".")[0]
+            needed = {top} | (networkx.descendants(graph, top) if top in graph else set())
+            assert needed & HEAVY, f"{name} imports {other} inside a function"
 
 
 def test_only_the_command_line_prints() -> None:

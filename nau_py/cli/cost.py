@@ -8,8 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import nau_py
+from nau_py.accuracy.apply import apply_setting
+from nau_py.accuracy.document import write_document
 from nau_py.cli.common import guarded, say, size_of, write_result
 from nau_py.diagnostics.diagnostic import Severity
+from nau_py.passes.frame import RunOptions
+from nau_py.run.pipeline_choice import choose_pipeline
 
 if TYPE_CHECKING:
     from nau_py.accuracy.cost_run import CostRun
@@ -85,10 +90,8 @@ def run(
     if apply and target_error is None and budget_time is None:
         raise typer.BadParameter("--apply needs --target-error or --budget-time")
     window, knobs = size_of(size), _knobs(spp, knob or [])
-    import nau_py
     from nau_py.accuracy.cost import CostRequest, measure_cost
     from nau_py.cli.cost_output import print_cost, whole_progress, write_all
-    from nau_py.passes.frame import RunOptions
     from nau_py.raytrace.ptx.host.supervision import needs_supervision, run_supervised
 
     loaded = nau_py.load(project)
@@ -105,7 +108,6 @@ def run(
     )  # fmt: skip
 
     def work() -> int:
-        from nau_py.accuracy.document import write_document
 
         with whole_progress(quiet) as progress:
             made = measure_cost(loaded, options, request, pipeline, window, frame, progress)
@@ -127,8 +129,6 @@ def run(
 
 
 def _apply(project: Project, made: CostRun) -> None:
-    from nau_py.accuracy.apply import apply_setting
-    from nau_py.run.pipeline_choice import choose_pipeline
 
     if made.chosen is None:
         sys.stderr.write("nothing to write: no setting meets what was asked\n")

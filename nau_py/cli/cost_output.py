@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 from rich.table import Table
 
+from nau_py.accuracy.report import to_csv, to_json
+from nau_py.accuracy.tables import make_effect_grid, make_setting_grid, write_sentences
 from nau_py.diagnostics.diagnostic import error
 from nau_py.diagnostics.errors import OutputError
 from nau_py.diagnostics.location import NOWHERE
 from nau_py.process.files import write_bytes, write_text
+from nau_py.reporting.chart import MISSING
 
 if TYPE_CHECKING:
     from nau_py.accuracy.cost_run import CostRun
@@ -63,7 +66,6 @@ def whole_progress(quiet: bool) -> Iterator[Callable[[str, float], None]]:
 
 def print_cost(report: CostReport) -> None:
     """Print the table of settings, and the answers."""
-    from nau_py.accuracy.tables import make_effect_grid, make_setting_grid, write_sentences
 
     console = Console(width=None if Console().is_terminal else 160)
     console.print(
@@ -92,8 +94,6 @@ def write_all(folder: Path, made: CostRun) -> None:
     """
     from nau_py.accuracy.front_chart import draw_front
     from nau_py.accuracy.page import write_page
-    from nau_py.accuracy.report import to_csv, to_json
-    from nau_py.reporting.chart import MISSING
 
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -10,18 +10,24 @@ from typing import Annotated
 import typer
 
 from nau_py.cli.common import FAILED, USAGE, guarded, stop_if_unreadable, write_result
+from nau_py.formats.json_schema import json_schema
+from nau_py.formats.load import is_library, load_library, load_project
+from nau_py.formats.write import format_node
+from nau_py.formats.xsd import xsd
+from nau_py.model.attributes import Registry
+from nau_py.syntax.language import is_yaml
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
 
-class Style(StrEnum):
+class FileFormat(StrEnum):
     """File formats."""
 
     XML = "xml"
     YAML = "yaml"
 
 
-class Kind(StrEnum):
+class SchemaKind(StrEnum):
     """Schemas."""
 
     JSON = "json"
@@ -34,11 +40,13 @@ def fmt(
     project: Annotated[
         Path | None, typer.Argument(help="Project file or material library.")
     ] = None,
-    to: Annotated[Style | None, typer.Option(help="Format; default the file's own.")] = None,
+    to: Annotated[FileFormat | None, typer.Option(help="Format; default the file's own.")] = None,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="File; else stdout.")
     ] = None,
-    schema: Annotated[Kind | None, typer.Option(help="Write a schema for editors instead.")] = None,
+    schema: Annotated[
+        SchemaKind | None, typer.Option(help="Write a schema for editors instead.")
+    ] = None,
     check: Annotated[bool, typer.Option(help="Only say whether the file is formatted.")] = False,
     debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
 ) -> None:
@@ -48,15 +56,12 @@ def fmt(
     if project is None:
         sys.stderr.write("Missing argument 'PROJECT'. Try 'nau-fmt --help'.\n")
         raise typer.Exit(USAGE)
-    from nau_py.formats.load import is_library, load_library, load_project
-    from nau_py.formats.write import format_node
-    from nau_py.syntax.language import is_yaml
 
     path = project
     library = is_library(path)
     loaded = load_library(path) if library else load_project(path)
     stop_if_unreadable(loaded)
-    own = Style.YAML if is_yaml(path) else Style.XML
+    own = FileFormat.YAML if is_yaml(path) else FileFormat.XML
     node = loaded.libraries[-1] if library else loaded.file
     text = format_node(node, loaded.registry, (to or own).value)
     if check:
@@ -72,13 +77,14 @@ def fmt(
     raise typer.Exit(guarded(work, loaded.sources, debug))
 
 
-def _schema(kind: Kind, output: Path | None) -> int:
-    from nau_py.formats.json_schema import json_schema
-    from nau_py.formats.xsd import xsd
-    from nau_py.model.attributes import Registry
+def _schema(kind: SchemaKind, output: Path | None) -> int:
 
     registry = Registry()
-    made = xsd(registry) if kind is Kind.XSD else json_schema(registry, kind is Kind.LIBRARY)
+    made = (
+        xsd(registry)
+        if kind is SchemaKind.XSD
+        else json_schema(registry, kind is SchemaKind.LIBRARY)
+    )
     write_result(output, made)
     return 0
 

@@ -11,7 +11,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import nau_py
 from nau_py.cli.common import guarded, stop_if_unreadable, write_result
+from nau_py.graph.times import median_times
 
 if TYPE_CHECKING:
     from nau_py.graph.network import CriticalPath
@@ -46,7 +48,6 @@ def graph(
     debug: Annotated[bool, typer.Option(help="Show tracebacks.")] = False,
 ) -> None:
     """Draw a pipeline, without a GL context."""
-    import nau_py
     from nau_py.graph.export import export
     from nau_py.graph.network import find_critical_path
 
@@ -67,7 +68,6 @@ def graph(
 
 def read_times(path: Path, pipeline: str) -> dict[str, float]:
     """Read the median times of a pipeline's passes from a report. Raises typer.BadParameter."""
-    from nau_py.graph.times import median_times
 
     try:
         return median_times(json.loads(path.read_text("utf-8")), pipeline)

@@ -22,7 +22,7 @@ app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 _SUFFIXES = (".xml", ".yaml", ".yml", ".mlib")
 
 
-class Style(StrEnum):
+class ReportFormat(StrEnum):
     """Output formats."""
 
     TEXT = "text"
@@ -55,7 +55,7 @@ def _looks_like_a_project(path: Path) -> bool:
 @app.command()
 def lint(
     paths: Annotated[list[Path], typer.Argument(help="Projects, material libraries or folders.")],
-    format: Annotated[Style, typer.Option(help="Output format.")] = Style.TEXT,
+    format: Annotated[ReportFormat, typer.Option(help="Output format.")] = ReportFormat.TEXT,
     models: Annotated[bool, typer.Option(help="Load and check the models too.")] = False,
     strict: Annotated[bool, typer.Option(help="Warnings fail too.")] = False,
     fix: Annotated[bool, typer.Option(help="Apply the safe fixes; report what is left.")] = False,
@@ -65,9 +65,9 @@ def lint(
     found, sources = _check(files, models)
     if fix and _fix(found):
         found, sources = _check(files, models)
-    if format is Style.JSON:
+    if format is ReportFormat.JSON:
         sys.stdout.write(to_json(found))
-    elif format is Style.SARIF:
+    elif format is ReportFormat.SARIF:
         sys.stdout.write(to_sarif(found, __version__))
     else:
         sys.stdout.write(to_text(found, sources))

@@ -11,8 +11,15 @@ from typing import Annotated, Any
 
 import typer
 
+import nau_py
+from nau_py.cli.batch import run_batch
 from nau_py.cli.common import USAGE, guarded, say, size_of, write_result
+from nau_py.cli.doctor import examine
+from nau_py.cli.progress import progress_bar
 from nau_py.diagnostics.diagnostic import Severity
+from nau_py.model.effects import wanted
+from nau_py.passes.frame import RunOptions
+from nau_py.run.report import joined
 
 ENTRY = "nau_py.cli.run:main"
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
@@ -47,7 +54,6 @@ class Programs(StrEnum):
 
 
 def _effects(text: str | None) -> str | None:
-    from nau_py.model.effects import wanted
 
     try:
         if text is not None:
@@ -122,12 +128,8 @@ def run(
 ) -> None:
     """Render a project to a picture."""
     if doctor:
-        from nau_py.cli.doctor import examine
-
         raise typer.Exit(examine())
     if batch is not None:
-        from nau_py.cli.batch import run_batch
-
         if project is not None or output is not None or targets is not None:
             raise typer.BadParameter(
                 "--batch renders a folder: no PROJECT, -o or --targets with it"
@@ -150,9 +152,6 @@ def run(
         raise typer.Exit(USAGE)
     window, (first, last) = size_of(size), _frames(frames)
     given = _parameters(set_ or [])
-    import nau_py
-    from nau_py.cli.progress import progress_bar
-    from nau_py.passes.frame import RunOptions
     from nau_py.raytrace.ptx.host.supervision import needs_supervision, run_supervised
 
     loaded = nau_py.load(project)
@@ -243,7 +242,6 @@ def _render(
 
 def _finish(reports: list[dict[str, Any]], path: Path | None, quiet: bool, explain: bool) -> None:
     from nau_py.reporting.pass_table import print_table
-    from nau_py.run.report import joined
 
     whole = joined(reports)
     if path is not None:

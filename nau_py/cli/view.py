@@ -12,6 +12,8 @@ from typing import Annotated
 import typer
 
 from nau_py.cli.common import FAILED, size_of
+from nau_py.passes.frame import RunOptions
+from nau_py.viewer.state import ViewerState
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 HOST = "127.0.0.1"
@@ -55,9 +57,7 @@ def view(
             f"nau-view: '{missing.name}' is missing; pip install 'nau_py[view]' brings it\n"
         )
         raise typer.Exit(FAILED) from None
-    from nau_py.passes.frame import RunOptions
     from nau_py.viewer.render_thread import RenderThread, make_worker
-    from nau_py.viewer.state import ViewerState
 
     listening = open_socket(port)
     if listening is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
 
@@ -63,7 +64,6 @@ def resolve(folder: Path, text: str) -> Resolved:
 
 def similar(resolved: Resolved) -> list[str]:
     """List names in the folder of a missing file that are similar to its name."""
-    from difflib import get_close_matches
 
     folder = resolved.path.parent
     names = list(_entries(str(folder)).values())

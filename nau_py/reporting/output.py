@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +36,6 @@ def exr(path: Path, image: NDArray[Any]) -> bytes:
         import OpenEXR  # type: ignore[import-not-found,unused-ignore]
     except ImportError:
         raise _failed(path, "EXR needs the extra: pip install 'nau_py[exr]'") from None
-    import tempfile
 
     values = image.astype(np.float32)
     if image.dtype == np.uint8:
