@@ -217,14 +217,14 @@ def test_an_unreachable_target(folder: Folder) -> None:
 def test_a_budget_is_kept_and_verified(folder: Folder) -> None:
     """Between what few and many samples take."""
     project = penumbra(folder)
-    first = run(project, knobs={"spp": "1, 4096"}, reference=4097, size=(96, 64))
+    first = run(project, knobs={"spp": "1, 1024"}, reference=1025, size=(48, 32))
     times = {k: s.time.median for k, s in by(first, "spp").items()}
-    budget = (times[1] + times[4096]) / 2000
+    budget = (times[1] + times[1024]) / 2000
     found = run(
-        project, knobs={"spp": "1, 4096"}, reference=8192, budget_time=budget, size=(96, 64)
+        project, knobs={"spp": "1, 1024"}, reference=2048, budget_time=budget, size=(48, 32)
     )
     assert found.chosen is not None
-    assert 1 < int(found.chosen["spp"] or 0) < 4096
+    assert 1 < int(found.chosen["spp"] or 0) < 1024
     promise = found.report.verified[0]
     assert promise.found.mean is not None
     # a verification on a machine that does other things, too
@@ -235,7 +235,7 @@ def masks() -> CostRun:
     """The plaza by rasterisation, with its mask, and with every pixel traced."""
     project = nau_py.load(PROJECTS / "selective" / "project.xml")
     knobs = {"mask": "none, project, all", "spp": "4"}
-    return run(project, knobs=knobs, reference=32, size=(96, 96), runs=2)
+    return run(project, knobs=knobs, reference=24, size=(48, 48), runs=2)
 
 
 def test_the_mask_against_tracing_everything() -> None:
@@ -288,7 +288,7 @@ def test_scale_renders_fewer_pixels(folder: Folder) -> None:
     # the pass's target has its own SIZE: the window is what scales, so rays stay
     assert rmse(found[0.5]) >= 0
     project = nau_py.load(PROJECTS / "selective" / "project.xml")
-    scaled = run(project, knobs={"scale": "0.5"}, reference=32, size=(64, 64), runs=2)
+    scaled = run(project, knobs={"scale": "0.5"}, reference=24, size=(32, 32), runs=2)
     half, whole = (by(scaled, "scale")[k] for k in (0.5, 1.0))
     assert half.pixels < 0.4 * whole.pixels
     assert rmse(half) > rmse(whole)

@@ -57,8 +57,15 @@ def render(project: nau_py.Project, seed: int, samples: int) -> nau_py.Frame:
     return nau_py.Renderer(project, options=options).render()
 
 
-@pytest.mark.parametrize("scene", [shadow, corner])
-@pytest.mark.parametrize("sampler", ["SOBOL", "RANDOM"])
+@pytest.mark.parametrize(
+    "scene, sampler",
+    [
+        (shadow, "SOBOL"),
+        (corner, "RANDOM"),
+        pytest.param(shadow, "RANDOM", marks=pytest.mark.slow),
+        pytest.param(corner, "SOBOL", marks=pytest.mark.slow),
+    ],
+)
 def test_the_interval_covers_the_truth(folder: Folder, scene: object, sampler: str) -> None:
     """The 95 % interval (Student's t of 16 batches) holds the true colour in 90 to 99 % of the
     pixels that have noise, over 20 seeds; the truth is the mean of 16,384 other samples."""

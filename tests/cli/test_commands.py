@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import nau_py
 from tests.conftest import PROJECTS, ROOT, Folder
 from tests.raytrace.studio import colour, program, square, studio
 
@@ -116,7 +117,8 @@ def test_frames_and_numbers(tmp_path: Path) -> None:
 def test_npy_keeps_the_values(tmp_path: Path) -> None:
     done = run("nau-run", SELECTIVE, "--pipeline", "Raster", *SMALL, "-o", str(tmp_path / "f.npy"))
     assert done.returncode == 0, done.stderr
-    assert np.load(tmp_path / "f.npy").shape == (48, 64, 4)
+    renderer = nau_py.Renderer(nau_py.load(SELECTIVE), "Raster", size=(64, 48))
+    np.testing.assert_array_equal(np.load(tmp_path / "f.npy"), renderer.render().image)
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import nau_py
+from nau_py.raytrace.tracing.accelerator import ISA_VARIABLE, read_isa_limit
 from tests.conftest import PROJECTS
 
 SIZE, SAMPLES = 64, 4
@@ -43,10 +44,13 @@ def test_instruction_sets_agree_within_the_stated_tolerance(isa: str, tmp_path: 
     assert (difference > 0).mean() <= 0.01
 
 
-def test_an_unknown_instruction_set_is_an_error_with_the_valid_names(tmp_path: Path) -> None:
-    done = run("avx-2", tmp_path / "picture.npy")
-    assert done.returncode != 0
-    assert done.stderr.strip() == (
+def test_an_unknown_instruction_set_is_an_error_with_the_valid_names(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv(ISA_VARIABLE, "avx-2")
+    with pytest.raises(nau_py.DeviceError) as found:
+        read_isa_limit()
+    assert str(found.value.diagnostics[0]) == (
         "error[D102]: NAU_EMBREE_ISA is 'avx-2'; one of sse4.2, avx, avx2, avx512 is expected "
         "(did you mean 'avx2'?)"
     )
