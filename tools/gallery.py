@@ -21,7 +21,13 @@ from nau_py.run.renderer import Renderer
 def sample_projects(root: Path) -> list[Path]:
     """List the sample projects of a repository: the demos first, then the course."""
     found = sorted((root / "projects").glob("*/project.xml"))
-    return found + sorted((root / "projects").glob("course/*/project.xml"))
+    return found + sorted((root / "projects").glob("course/*.xml"))
+
+
+def name_project(root: Path, file: Path) -> str:
+    """Return the name of a sample project: its folder, with its file where that has several."""
+    parts = file.relative_to(root / "projects").with_suffix("").parts
+    return "_".join(parts).removesuffix("_project")
 
 
 def build_gallery(root: Path, out: Path) -> Iterator[str]:
@@ -34,8 +40,8 @@ def build_gallery(root: Path, out: Path) -> Iterator[str]:
     lines = [
         "# Gallery",
         "",
-        "Every sample project: its picture, its passes, and what they cost on the machine that "
-        "built this page.",
+        "Every sample project: its picture, its passes, and their time on the machine that built "
+        "this page.",
         "",
     ]
     for file in sample_projects(root):
@@ -45,7 +51,7 @@ def build_gallery(root: Path, out: Path) -> Iterator[str]:
             frame = renderer.render()
         finally:
             renderer.close()
-        name = "_".join(file.parent.relative_to(root / "projects").parts)
+        name = name_project(root, file)
         write_bytes(out / f"{name}.png", encode_png(frame.image))
         write_text(out / f"{name}.svg", draw_svg(plan(project).graph))
         lines += _entry(root, file, project, frame, name)
@@ -58,7 +64,8 @@ def _entry(root: Path, file: Path, project: Project, frame: Frame, name: str) ->
     report = frame.report["frames"][-1]
     readme = file.parent / "README.md"
     text = readme.read_text("utf-8") if readme.exists() else ""
-    title = next(iter(re.findall(r"^# (.+)$", text, re.MULTILINE)), project.name)
+    titles = re.findall(r"^# (.+)$", text, re.MULTILINE) if file.stem == "project" else []
+    title = titles[0] if titles else project.name
     height, width = frame.image.shape[:2]
     about = f"{width} × {height}, {report['ms']:,.0f} ms. Files: [README](../{folder}/README.md)"
     return [
@@ -66,7 +73,7 @@ def _entry(root: Path, file: Path, project: Project, frame: Frame, name: str) ->
         "",
         f"![{title}]({name}.png)",
         "",
-        f"{about}, [project.xml](../{folder}/project.xml).",
+        f"{about}, [{file.name}](../{folder}/{file.name}).",
         "",
         *to_markdown(make_pass_grid(report)),
         "",

@@ -18,6 +18,7 @@ from nau_py.model.schema import AttributeField, schema_of
 from nau_py.model.shader import STAGES, Shader
 from nau_py.model.walk import walk_nodes
 from nau_py.process.paths import resolve
+from nau_py.raytrace.programs.neighbours import read_neighbour_imports
 from nau_py.raytrace.programs.source import stand_in, strip_decoration
 
 _UNIFORM = r"\buniform\b[^;{{}}]*?\b({})\b\s*(?:\[[^\]]*\]\s*)?[;=,]"
@@ -67,25 +68,38 @@ def _resolve(project: Project, node: Node, attribute: AttributeField, value: str
 
 
 def _link_procedure(project: Project, node: Program) -> Iterator[SourceLink]:
-    path = stand_in(project.folder, node.file or "")
-    line = _find_line(path, node.proc or "") if path is not None else None
-    if path is not None and line is not None:
-        word = Symbol("procedure", node.proc or "", node.proc or "", node.where("proc"))
-        yield SourceLink(word, (Location(str(path), line, 1),))
+    path, proc = stand_in(project.folder, node.file or ""), node.proc or ""
+    known = list_procedures(path) if path is not None else {}
+    place = known.get(proc, known.get(strip_decoration(proc)))
+    if place is not None:
+        yield SourceLink(Symbol("procedure", proc, proc, node.where("proc")), (place,))
 
 
-def _find_line(path: Path, proc: str) -> int | None:
-    known = list_procedures(path)
-    return known.get(proc, known.get(strip_decoration(proc)))
+def list_procedures(path: Path) -> dict[str, Location]:
+    """Return the functions of a Python file, with their places. The file is not run.
+
+    Functions that the file imports from its neighbours count.
+    """
+    return _list_procedures(path, frozenset())
 
 
-def list_procedures(path: Path) -> dict[str, int]:
-    """Return the functions that a Python file defines, with their lines. The file is not run."""
+def _list_procedures(path: Path, importers: frozenset[Path]) -> dict[str, Location]:
+    """List the procedures of a file that ``importers`` import, directly or not."""
     try:
         tree = ast.parse(path.read_bytes(), str(path))
     except (OSError, SyntaxError, ValueError):
         return {}
-    return {n.name: n.lineno for n in tree.body if isinstance(n, ast.FunctionDef)}
+    found: dict[str, Location] = {}
+    for name, (other, there) in read_neighbour_imports(tree, path.parent).names.items():
+        if other in importers:
+            continue
+        known = _list_procedures(other, importers | {path})
+        if there == "*":
+            found |= known
+        elif there in known:
+            found[name] = known[there]
+    functions = (n for n in tree.body if isinstance(n, ast.FunctionDef))
+    return found | {n.name: Location(str(path), n.lineno, 1) for n in functions}
 
 
 def list_shader_files(shader: Shader) -> list[Path]:

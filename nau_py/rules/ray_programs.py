@@ -131,9 +131,9 @@ def _missing_file(project: Project, program: Program, label: str) -> Iterator[Di
 
 
 def defined_names(path: Path) -> list[str] | None:
-    """List the names that a Python file defines at its top level, without running it.
+    """List the names that a Python file defines or imports at its top level, without running it.
 
-    Returns None for a file that does not parse.
+    Returns None for a file that does not parse, and for one that imports all names of a module.
     """
     try:
         tree = ast.parse(path.read_bytes(), str(path))
@@ -145,4 +145,4 @@ def defined_names(path: Path) -> list[str] | None:
             names += [t.id for t in node.targets if isinstance(t, ast.Name)]
         elif isinstance(node, ast.ImportFrom | ast.Import):
             names += [a.asname or a.name for a in node.names]
-    return names
+    return None if "*" in names else names

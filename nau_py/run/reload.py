@@ -63,6 +63,7 @@ class HotReload:
         if SHADER in kinds:
             self.renderer.reload_shaders({p for p, kind in changed.items() if kind == SHADER})
         if PROGRAM in kinds:
+            self._follow(self.project)  # programs may import new files
             self.renderer.reload_ray_programs()
         frame = self.renderer.again()
         self._sound = True

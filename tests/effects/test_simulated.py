@@ -25,10 +25,10 @@ QUICK = ("05_alpha", "06_transparency", "07_reflection_refraction", "13_path_tra
 SAMPLES = [
     pytest.param(
         path,
-        id=path.parent.name,
-        marks=[pytest.mark.slow] * ("course" in path.parts and path.parent.name not in QUICK),
+        id=path.stem if "course" in path.parts else path.parent.name,
+        marks=[pytest.mark.slow] * ("course" in path.parts and path.stem not in QUICK),
     )
-    for path in sorted([*PROJECTS.glob("*/project.xml"), *PROJECTS.glob("course/*/project.xml")])
+    for path in sorted([*PROJECTS.glob("*/project.xml"), *PROJECTS.glob("course/*.xml")])
 ]
 
 

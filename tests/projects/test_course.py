@@ -12,7 +12,7 @@ import nau_py
 from nau_py.model.node import Setting
 from tests.conftest import PROJECTS
 
-STEPS = {int(p.name[:2]): p for p in sorted((PROJECTS / "course").iterdir()) if p.is_dir()}
+STEPS = {int(p.name[:2]): p for p in sorted((PROJECTS / "course").glob("*.xml"))}
 KINDS = {
     4: {"shadow"},
     5: {"shadow", "continuation"},
@@ -27,7 +27,7 @@ SIZE = (96, 96)
 
 @lru_cache(maxsize=32)
 def traced(step: int, samples: int | None = None) -> nau_py.Frame:
-    project = nau_py.load(STEPS[step] / "project.xml")
+    project = nau_py.load(STEPS[step])
     options = nau_py.RunOptions(samples=samples, check_numerics=True)
     return nau_py.Renderer(project, size=SIZE, options=options, keep_targets=True).render()
 
@@ -37,18 +37,18 @@ def radiance(step: int, samples: int | None = None) -> np.ndarray[Any, np.dtype[
     return np.asarray(traced(step, samples).targets["Studio::radiance"][..., :3])
 
 
-def test_there_are_fourteen_steps_with_a_page_each() -> None:
+def test_there_are_fourteen_steps_with_a_section_each() -> None:
     assert list(STEPS) == list(range(1, 15))
-    overview = (PROJECTS / "course" / "README.md").read_text()
-    for folder in STEPS.values():
-        page = (folder / "README.md").read_text()
-        assert f"projects/course/{folder.name}/project.xml" in page
-        assert f"({folder.name}/README.md)" in overview
+    page = (PROJECTS / "course" / "README.md").read_text()
+    for step, file in STEPS.items():
+        assert f"\n## {step}. " in page
+        assert f"](#{step}-" in page
+        assert f"projects/course/{file.name} " in page
 
 
 @pytest.mark.parametrize("step", list(range(1, 15)))
 def test_a_step_has_no_finding_and_a_picture(step: int) -> None:
-    project = nau_py.load(STEPS[step] / "project.xml")
+    project = nau_py.load(STEPS[step])
     assert [str(d) for d in nau_py.lint(project)] == []
     frame = traced(step, 1)
     assert frame.report["nonfinite"] == 0
@@ -96,7 +96,7 @@ def test_occlusion_is_a_part_of_the_colour() -> None:
 
 
 def through_lens(radius: float) -> np.ndarray[Any, np.dtype[np.float32]]:
-    project = nau_py.load(STEPS[12] / "project.xml")
+    project = nau_py.load(STEPS[12])
     project.pipelines[0].passes[0].settings["LENS"] = Setting((radius,))
     options = nau_py.RunOptions(samples=16)
     renderer = nau_py.Renderer(project, size=SIZE, options=options, keep_targets=True)

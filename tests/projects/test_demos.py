@@ -205,9 +205,7 @@ class Camera:
 
 
 @pytest.mark.parametrize("samples", [1, 2, 8, 11, 13, 16])
-@pytest.mark.parametrize(
-    "file", ["selective/programs/hybrid.py", "course/08_anti_aliasing/programs.py"]
-)
+@pytest.mark.parametrize("file", ["selective/programs/hybrid.py", "course/08_anti_aliasing.py"])
 def test_samples_fill_the_pixel(file: str, samples: int) -> None:
     """Their mean is the middle of the pixel for numbers without a grid, too: nau-cost showed a bias
     at 8, 11 and 13."""

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 
 from tests.conftest import ROOT, Folder, RayProject
-from tools.gallery import build_gallery, copy_sources, sample_projects
+from tools.gallery import build_gallery, copy_sources, name_project, sample_projects
 
 
 def test_a_gallery_of_one(ray_project: RayProject, folder: Folder, tmp_path: Path) -> None:
@@ -39,9 +39,9 @@ def test_a_gallery_of_one(ray_project: RayProject, folder: Folder, tmp_path: Pat
 
 
 def test_every_sample_is_in_the_gallery() -> None:
-    names = [p.parent.name for p in sample_projects(ROOT)]
+    names = [name_project(ROOT, p) for p in sample_projects(ROOT)]
     assert names[:2] == ["ambient_occlusion", "caustics"]
-    assert {"selective", "14_tone_mapping"} <= set(names)
+    assert {"selective", "course_14_tone_mapping"} <= set(names)
 
 
 def test_the_site_has_no_broken_link(tmp_path: Path) -> None:

@@ -1,15 +1,11 @@
-"""Ray programs: found, loaded when a project runs, and their results checked at every call."""
+"""Load the ray programs of a pass, and check their results at every call."""
 
 from __future__ import annotations
 
-import hashlib
-import importlib.util
-import sys
 import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -23,6 +19,7 @@ from nau_py.raytrace.kernels.core.tables import USER
 from nau_py.raytrace.programs.batch import CODES, FUNCTIONS
 from nau_py.raytrace.programs.source import stand_in, strip_decoration
 from nau_py.raytrace.tracing.arrays import F32, Mask
+from nau_py.raytrace.tracing.program_modules import ProgramModules
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,12 +46,14 @@ class BoundProgram:
             raise ProgramError(error("T010", where, message)) from bug
 
     def _find_location(self, bug: Exception) -> Location:
-        """Return the innermost line of the program's own file, else its place in the project."""
+        """Return the innermost line of the program's file or of a neighbour that it imports, else
+        its place in the project."""
         frames = traceback.extract_tb(bug.__traceback__)
-        own = [f for f in frames if f.filename == self.file]
+        folder = Path(self.file).parent
+        own = [f for f in frames if Path(f.filename).parent == folder]
         if not own:
             return self.location
-        return Location(self.file, own[-1].lineno or 0, (own[-1].colno or 0) + 1)
+        return Location(own[-1].filename, own[-1].lineno or 0, (own[-1].colno or 0) + 1)
 
     def _result_error(self, what: str) -> ProgramError:
         """Return the error for a program that returned ``what``."""
@@ -123,14 +122,14 @@ class TrustRule:
         known = real in [file.resolve() for file in self.files]
         if not known and not any(real.is_relative_to(f.resolve()) for f in self.folders):
             message = (
-                f"{label}: '{path}' lies outside the project's folder; "
+                f"{label}: '{path}' is outside the project's folder; "
                 f"allow it with --allow-programs {real.parent}"
             )
             raise ProgramError(error("T012", where, message))
 
 
 class ProgramLoader:
-    """Loads the programs of one pass: built-ins, and Python modules, each file once.
+    """Loads the programs of one pass: built-in ones, and functions of Python files.
 
     ``provided``: further built-ins by kind and name, which the caller makes.
     """
@@ -143,8 +142,7 @@ class ProgramLoader:
     ) -> None:
         self._provided = provided or {}
         self._folder = folder
-        self._trust = trust
-        self._modules: dict[Path, ModuleType] = {}
+        self._modules = ProgramModules(trust.check)
 
     def load(self, program: Program, label: str, kind: str) -> BoundProgram:
         """Return the program of ``file`` and ``proc``. Raises :class:`~nau_py.ProgramError`."""
@@ -161,38 +159,11 @@ class ProgramLoader:
             return BoundProgram(functions.get(proc), label, program.location, "", code)
         path = stand_in(self._folder, program.file or "")
         if path is None:
-            message = f"{label}: no Python file stands in for '{program.file}'"
+            message = f"{label}: there is no Python file for '{program.file}'"
             raise ProgramError(error("T005", program.where("file"), message))
-        self._trust.check(path, program.where("file"), label)
-        module = self._module(path, program.where("file"), label)
+        module = self._modules.load(path, program.where("file"), label)
         function = getattr(module, proc, None) or getattr(module, strip_decoration(proc), None)
         if not callable(function):
             message = f"{label}: '{path.name}' defines no function '{proc}'"
             raise ProgramError(error("T004", program.where("proc"), message))
         return BoundProgram(function, label, program.location, str(path))
-
-    def _module(self, path: Path, where: Location, label: str) -> ModuleType:
-        if path in self._modules:
-            return self._modules[path]
-        digest = hashlib.sha256(str(path).encode()).hexdigest()[:12]
-        name = f"nau_py_program_{path.stem}_{digest}"
-        spec = importlib.util.spec_from_file_location(name, path)
-        if spec is None or spec.loader is None:
-            raise ProgramError(error("T005", where, f"{label}: '{path}' is no Python file"))
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[name] = module
-        try:
-            # not through the loader: it writes bytecode into the project's folder, and compares it
-            # with the source by size and whole seconds only
-            code = compile(path.read_bytes(), str(path), "exec", dont_inherit=True)
-            exec(code, module.__dict__)
-        except SyntaxError as bug:
-            place = Location(str(path), bug.lineno or 1, bug.offset or 1)
-            raise ProgramError(error("T010", place, f"{label}: {bug.msg}")) from bug
-        except Exception as bug:
-            frames = [f for f in traceback.extract_tb(bug.__traceback__) if f.filename == str(path)]
-            place = Location(str(path), frames[-1].lineno or 1, 1) if frames else where
-            message = f"{label}: loading '{path.name}' raised {type(bug).__name__}: {bug}"
-            raise ProgramError(error("T010", place, message)) from bug
-        self._modules[path] = module
-        return module

@@ -1,0 +1,71 @@
+"""Modules beside a ray program that it may import by their plain names. Nothing is run here.
+
+``import common`` in a program means ``common.py`` in the folder of the program, unless the standard
+library or an installed package has a module of that name: these are never replaced.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from dataclasses import dataclass, field
+from functools import lru_cache
+from importlib.util import find_spec
+from pathlib import Path
+
+
+def find_neighbour(folder: Path, name: str) -> Path | None:
+    """Return the file that ``import name`` means in a program of ``folder``.
+
+    None if there is no such file, or if the name belongs to the standard library or to an installed
+    package.
+    """
+    path = folder / f"{name}.py"
+    if not name.isidentifier() or not path.is_file() or _is_installed(name, Path.cwd()):
+        return None
+    return path
+
+
+@lru_cache(maxsize=256)
+def _is_installed(name: str, working: Path) -> bool:
+    """Return True if a module of the standard library or of an installed package has this name.
+
+    Modules of the folder ``working`` do not count: Python may search the working folder, which
+    differs from run to run.
+    """
+    if name in sys.stdlib_module_names or name == "nau_py":
+        return True
+    try:
+        spec = find_spec(name)
+    except (ImportError, ValueError):  # a module without a specification, such as __main__
+        return True
+    if spec is None or spec.origin is None:  # without an origin: a folder, not a package
+        return False
+    return working not in Path(spec.origin).resolve().parents[:2]
+
+
+@dataclass(slots=True)
+class NeighbourImports:
+    """Names that a program file imports from its neighbours.
+
+    ``names``: local name to file and name there; ``modules``: local name to file.
+    """
+
+    names: dict[str, tuple[Path, str]] = field(default_factory=dict)
+    modules: dict[str, Path] = field(default_factory=dict)
+
+
+def read_neighbour_imports(tree: ast.Module, folder: Path) -> NeighbourImports:
+    """Collect the imports of neighbours in the source of a program of ``folder``."""
+    found = NeighbourImports()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                path = find_neighbour(folder, alias.name)
+                if path is not None:
+                    found.modules[alias.asname or alias.name] = path
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            path = find_neighbour(folder, node.module)
+            if path is not None:
+                found.names |= {a.asname or a.name: (path, a.name) for a in node.names}
+    return found
