@@ -1,4 +1,4 @@
-"""What a frame costs beside OpenGL: the framework's own time.
+"""Time of a frame outside OpenGL: the framework's own part.
 
 ``python benchmarks/frame.py`` draws a project of five passes (shadow map, shaded scene into two
 targets, two filters, combination) on a small window, in steady state: as it is, and with the GL

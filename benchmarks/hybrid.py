@@ -1,4 +1,4 @@
-"""What hybrid rendering saves, as a ratio in one run.
+"""Time that hybrid rendering saves, as a ratio in one run.
 
 ``python benchmarks/hybrid.py [SIZE]`` renders the selective demo at SIZE x SIZE (1024) with its
 mask and its twin that traces every pixel, 16 samples, the same programs. It prints the time of the

@@ -1,4 +1,4 @@
-"""How long a change takes from saving a file to the new picture.
+"""Time from saving a file to the new picture.
 
 ``python benchmarks/reload.py [SIZE]`` copies the selective demo, follows it as ``nau-run --watch``
 does, and saves a shader, a ray program and the project file, five times each. It prints the medians

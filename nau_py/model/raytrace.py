@@ -90,7 +90,7 @@ class RayMaterial(Node):
 
 
 class EntryPoint(Node):
-    """Where a launch begins, and what runs when it fails."""
+    """The ray generation program of a launch, and the program that runs for failed samples."""
 
     rayGen: Annotated[Program | None, Child(Program, doc="Ray generation.")] = None
     exception: Annotated[Program | None, Child(Program, doc="Exception program.")] = None

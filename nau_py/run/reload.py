@@ -1,8 +1,7 @@
-"""Hot reload: follows the files of a project and renders again what has changed.
+"""Hot reload: follow the files of a project, and render again after a change.
 
-What is loaded stays as long as it can: a shader is compiled, a ray program bound anew; anything
-else loads the project again. Where the new state is wrong the last good one stays, and the error
-says why.
+A changed shader is compiled again and a changed ray program loaded again; any other change loads
+the whole project. After an error the last good state stays, and the error is raised.
 """
 
 from __future__ import annotations

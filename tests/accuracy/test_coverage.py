@@ -1,4 +1,4 @@
-"""Whether the estimated error of a run tells the true one."""
+"""The estimated error of a run against the true one."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def test_the_estimate_errs_on_the_safe_side(folder: Folder) -> None:
 
 
 def test_seeds_that_change_nothing_are_told() -> None:
-    """Where two renders with other seeds agree to the bit, no interval says anything."""
+    """Two renders with other seeds that agree to the bit give no interval."""
     for own, count in ((0.0, 1), (1e-4, 0)):
         ranking = Ranking("rmse", "picture", SimpleNamespace(own_mse=lambda region, v=own: v), [])
         said = [note for note in ranking.list_notes() if "seeds change nothing" in note]

@@ -54,7 +54,7 @@ class Difference:
 
 @dataclass
 class Result:
-    """What became of a request: how far it came, what was said, time and differences."""
+    """Result of a request: the last stage, its message, time and differences."""
 
     project: str
     pipeline: str | None

@@ -63,7 +63,7 @@ def prepared(name: str, folder: Path) -> tuple[Path, dict[str, Any]]:
 
 
 def words(frame: nau_py.Frame) -> Pixels:
-    """What the program wrote, RGB."""
+    """Return the colours that the program wrote, RGB."""
     (name,) = [n for n in frame.targets if not n.endswith("_depth")][:1]
     return frame.targets[name][:, :, :3].astype(int)
 

@@ -254,8 +254,10 @@ def test_gbuffer_origin(folder: Folder) -> None:
 
 
 def test_history_resize(folder: Folder) -> None:
-    """What earlier frames accumulated does not outlive what they showed: after a move the picture
-    has no stale sample. (A renderer's window keeps its size.)"""
+    """Accumulated samples are dropped when an object moves: the picture has no stale sample.
+
+    A renderer's window keeps its size.
+    """
     scene = square("wall", "Wall", [0.7, 1, 0.7], [0, 0, 0], TURN)
     material = {"Wall": colour("EMISSION", 0.25, 0.5, 1.0, 1.0)}
     settings = '<ACCUMULATE value="true" />'

@@ -1,4 +1,4 @@
-"""The fourteen steps of the course: each runs, and adds what it says to the step before."""
+"""The fourteen steps of the course: each runs, and adds its effect to the step before."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def traced(step: int, samples: int | None = None) -> nau_py.Frame:
 
 
 def radiance(step: int, samples: int | None = None) -> np.ndarray[Any, np.dtype[np.float32]]:
-    """What the rays brought, (height, width, 3)."""
+    """Return the traced colours, (height, width, 3)."""
     return np.asarray(traced(step, samples).targets["Studio::radiance"][..., :3])
 
 
@@ -57,7 +57,7 @@ def test_a_step_has_no_finding_and_a_picture(step: int) -> None:
 
 
 def test_step_1_shows_the_colours_of_the_materials() -> None:
-    """White but for glass, dark stone and what else has no texture; above, the sky."""
+    """White except for glass, dark stone and other materials without a texture; above, the sky."""
     found = radiance(1)
     colours = {tuple(np.round(c, 4)) for c in found.reshape(-1, 3).tolist()}
     assert (1.0, 1.0, 1.0) in colours
@@ -74,7 +74,7 @@ def test_shadows_only_take_light_away() -> None:
 
 
 def test_holes_let_light_through() -> None:
-    """What differs between cards and grilles: holes show what is behind, shadows get lighter."""
+    """Grilles differ from cards: holes show the background, shadows get lighter."""
     cards, grilles = radiance(4), radiance(5)
     changed = (np.abs(cards - grilles) > 1e-3).any(axis=-1)
     assert 0.005 < changed.mean() < 0.3

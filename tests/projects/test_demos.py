@@ -88,8 +88,8 @@ def test_materials_behind_the_mask(selective: nau_py.Frame) -> None:
 
 @pytest.mark.parametrize("name", ["half", "selective"])
 def test_ray_and_raster_agree(name: str, request: pytest.FixtureRequest) -> None:
-    """Where a 3 x 3 neighbourhood shows one triangle, both hit the same point to 1e-4 of the
-    scene's size."""
+    """In a 3 x 3 neighbourhood of one triangle, both hit the same point to 1e-4 of the scene's
+    size."""
     frame: nau_py.Frame = request.getfixturevalue(name)
     project = nau_py.load(PROJECTS / name / "project.xml")
     world = World(project, SIZE)
@@ -183,7 +183,7 @@ def test_the_twin_that_traces_everything_agrees_inside_the_mask(selective: nau_p
 
 
 class Camera:
-    """What a ray generation program sees, and where in the pixel it sends its rays."""
+    """Launch that a ray generation program receives; ``trace`` returns the image points."""
 
     def __init__(self, samples: int) -> None:
         self.samples = samples

@@ -108,7 +108,8 @@ def through_sphere(
     radius: float,
     eta: float,  # type: ignore[type-arg]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # type: ignore[type-arg]
-    """Which rays meet a sphere about 0, and where and how they leave it, float64, by Snell."""
+    """Return the rays that meet a sphere about 0, and the points and directions in which they leave
+    it, float64, by Snell's law."""
     d = direction / np.linalg.norm(direction, axis=-1, keepdims=True)
     b = (origin * d).sum(axis=-1)
     disc = b**2 - (origin**2).sum(axis=-1) + radius**2

@@ -58,7 +58,7 @@ def test_numbers_are_uniform_and_keyed() -> None:
 
 
 def sample_points(rule: int, count: int, pixel: int = 123) -> np.ndarray:  # type: ignore[type-arg]
-    """Where the samples of a pixel lie inside it, float64 (count, 2)."""
+    """Return the positions of the samples inside a pixel, float64 (count, 2)."""
     camera = np.zeros(1, CAMERA)  # orthographic, one world unit a pixel
     camera["forward"], camera["right"], camera["up"] = (0, 0, -1), (1, 0, 0), (0, 1, 0)
     camera["step"] = (1, 1)

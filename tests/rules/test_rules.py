@@ -52,7 +52,7 @@ MIRROR = '<rtProgram type="CLOSEST_HIT" file="builtin" proc="mirror"/>'
 
 
 def pointed_at(found: nau_py.Diagnostic, sources: dict[str, str]) -> str:
-    """What stands where a finding points: the word that a caret would mark."""
+    """Return the word at the place of a finding, which a caret would mark."""
     line = sources[found.location.file].splitlines()[found.location.line - 1]
     rest = line[found.location.column - 1 :]
     return re.split(r"[\s/>'\"]", rest.lstrip("<"), maxsplit=1)[0]

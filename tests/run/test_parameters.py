@@ -1,4 +1,4 @@
-"""What a project's interface offers can be set from outside."""
+"""The variables of a project's interface can be set from outside."""
 
 from __future__ import annotations
 

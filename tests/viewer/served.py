@@ -73,7 +73,7 @@ class Served:
 
 
 class Window:
-    """What one browser window is told."""
+    """One browser window: the messages that it receives."""
 
     def __init__(self, connecting: AbstractContextManager[ClientConnection]) -> None:
         self._connecting = connecting
@@ -109,5 +109,5 @@ class Window:
 
 
 def sharp(window: Window) -> bool:
-    """Whether there is a picture of full size."""
+    """Return True if there is a picture of full size."""
     return bool(window.glance.get("pictures")) and not window.glance["coarse"]

@@ -44,7 +44,7 @@ def served(demo: Path) -> Iterator[Served]:
 
 
 class Person:
-    """What one does in a window, and what one waits to see."""
+    """A user of a window: actions, and waiting for their effects."""
 
     def __init__(self, page: sync_api.Page) -> None:
         self.page = page

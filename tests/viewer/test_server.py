@@ -111,7 +111,7 @@ def test_targets_pixels_exports_and_comparison(served: Served) -> None:
 
 
 def test_hovering_disturbs_no_export(served: Served) -> None:
-    """What is asked for is finished, whatever else is asked and changed meanwhile."""
+    """An export is finished, in spite of other requests and changes meanwhile."""
     with served.window() as window:
         window.until(sharp)
         found: list[tuple[int, bytes]] = []

@@ -52,5 +52,5 @@ def sky(rays):
 
 
 def exception(launch):
-    """What a failed sample shows."""
+    """Exception: the colour of a failed sample."""
     return np.array([1.0, 0.0, 1.0])
