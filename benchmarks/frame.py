@@ -2,7 +2,7 @@
 
 ``python benchmarks/frame.py`` draws a project of five passes (shadow map, shaded scene into two
 targets, two filters, combination) on a small window, in steady state: as it is, and with the GL
-calls of drawing replaced by functions that do nothing, so that what is left is Python. It prints
+calls of drawing replaced by functions that do nothing, so that only Python is left. It prints
 milliseconds a frame (median of 200, and the middle half) and their ratio.
 """
 

@@ -1,6 +1,6 @@
 #version 330
 
-// What was traced where the 4th component of the position says so, what was rasterised elsewhere.
+// Traced colour if the 4th component of the position is 1, else the rasterised colour.
 
 uniform sampler2D raster;
 uniform sampler2D position;

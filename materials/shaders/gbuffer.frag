@@ -1,4 +1,4 @@
-// Colour, and world position with the mask: 1 where the light direction is null.
+// Colour, and world position with the mask: 1 if the light direction is null.
 // Comes after sun.frag.
 
 in vec3 worldPosition;

@@ -1,6 +1,6 @@
 #version 330
 
-// Geometry that is left to the rays: its light direction is null.
+// Geometry that is traced: its light direction is null.
 
 in vec4 position;
 in vec4 normal;

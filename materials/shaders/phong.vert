@@ -1,6 +1,6 @@
 #version 330
 
-// World space: the rasterised twin of the built-in ray programs phong and blinn_phong.
+// World space: rasterises as the built-in ray programs phong and blinn_phong shade.
 
 in vec4 position;
 in vec4 normal;

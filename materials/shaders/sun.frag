@@ -1,6 +1,6 @@
 #version 330
 
-// What the hybrid shaders share: the texel of a surface, and its colour under the sun with the
+// Shared by the hybrid shaders: the texel of a surface, and its colour under the sun with the
 // shadow map. The ray programs of the demos compute the same with shadow rays.
 
 uniform vec4 lightColor;

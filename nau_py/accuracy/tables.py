@@ -88,7 +88,7 @@ def make_sample_grid(report: CostReport) -> Grid | None:
                 format_number(gain),
             )
         )
-    title = f"What {', '.join(r[0] for r in rows[1:])} samples buy over {rows[0][0]}"
+    title = f"Gain of {', '.join(r[0] for r in rows[1:])} samples over {rows[0][0]}"
     head = ("spp", "ms a frame", "of it trace and shade", "rmse", "times less error")
     return Grid(title, head, tuple(rows))
 
@@ -126,7 +126,7 @@ def make_effect_grid(report: CostReport) -> Grid | None:
         for e in report.effects
     )
     head = ("without", "called for", "rays saved", "ms saved", "rmse", "largest", "pixels")
-    return Grid("What each effect is worth", head, rows)
+    return Grid("Rays, time and difference of each effect", head, rows)
 
 
 def write_sentences(report: CostReport) -> list[str]:

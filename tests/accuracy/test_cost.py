@@ -115,7 +115,7 @@ def test_the_files(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     assert re.findall(r"(?:src|href)=\"(?!data:)[^\"]*\"|https?://", html) == []
     for s in found.report.settings:
         assert s.label in html
-    assert "What each effect is worth" in html
+    assert "Rays, time and difference of each effect" in html
     assert "data:image/svg+xml" in html
     with monkeypatch.context() as without:
         without.setattr("nau_py.accuracy.front_chart.can_draw", lambda: False)
@@ -129,7 +129,7 @@ def test_the_files(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = np.asarray(Image.open(io.BytesIO(front)))
     assert drawn.std() > 5
     told = write_document(found.report)
-    assert "## What 4 samples buy over 1" in told
+    assert "## Gain of 4 samples over 1" in told
     assert "| shadow | yes |" in told
 
 

@@ -158,19 +158,19 @@ INTRODUCTION = """\
 Nau3D's own projects (the public repository Nau3D/nau), each pipeline that the real engine rendered and
 the default pipeline of each other project: {said}. *Equal* means a mean absolute difference of at most
 1.5/255 and a 99th percentile of at most 8/255, in the picture and in every render target that the real
-engine left; the columns give mean / 99th percentile. Where a model is in no checkout, another one
-stands in, and there is no reference. Made by
+engine left; the columns give mean / 99th percentile. If a model is in no checkout, another one
+replaces it, and there is no reference. Made by
 
 ```sh
 python -m tests.corpus --nau CHECKOUT --oracle DIR --out report.html --markdown docs/conformance.md
 ```
 
-What does not run says why. Ray tracing runs the shipped PTX, of classes `rt` and `optix`
+A project that does not run has the reason in the last column. Ray tracing runs the shipped PTX, of classes `rt` and `optix`
 ([programs](programs.md)); `tests/corpus/test_ptx.py` compares it with pictures of real OptiX. The profiler's picture differs by its text: the real one writes more
-lines, in a font of its own, of a clock that stood still.
+lines, in a font of its own, of a clock that does not run.
 
 """
-HEAD = ["project", "pipeline", "verdict", "ms a frame", "picture", "worst target", "what is said"]
+HEAD = ["project", "pipeline", "verdict", "ms a frame", "picture", "worst target", "message"]
 
 
 def main() -> None:

@@ -87,7 +87,7 @@ def test_the_demo_in_an_editor(demo: Path) -> None:
         names = await editor.labels(library, half, "lf")
         assert {"lit", "masked", "half", "caster", "combine"} <= set(names)
         shader = library.parent / "shaders" / "lit.vert"
-        ends = 'component="TS05_PVM_MATRIX" />\n        </values>\n      </shader>\n    </material>\n    <!-- Left'
+        ends = 'component="TS05_PVM_MATRIX" />\n        </values>\n      </shader>\n    </material>\n    <!-- Traced'
         found = await editor.definition(
             library, 'uniform="sunM', f'atrix" type="CAMERA" context="SunEye" {ends}'
         )

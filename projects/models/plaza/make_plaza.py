@@ -45,7 +45,7 @@ class Builder:
             for a, b, c in zip(p, uvs, normals)
         ]
         key = frozenset(corner.split("/")[0] for corner in corners)
-        if key in self.placed:  # a second face in the same place would be seen by rays only
+        if key in self.placed:  # only rays would see a second face in the same place
             return
         self.placed.add(key)
         self.faces.setdefault((group, material), []).append("f " + " ".join(corners))

@@ -2,7 +2,7 @@
 built in.
 
 Each one works on a batch: `hits` holds n hits on one material, arrays have the shape (n,) or
-(n, 3), and what is returned is the colour that each ray brings.
+(n, 3), and the result is the colour of each ray.
 """
 
 import numpy as np
@@ -17,7 +17,7 @@ def dot(a, b):
 def pinhole_camera(launch):
     """Ray generation: one ray a sample, jittered inside its cell of a grid over the pixel."""
     side = round(launch.samples**0.5)
-    side = side if side * side == launch.samples else 1  # of other numbers there is no grid
+    side = side if side * side == launch.samples else 1  # other numbers have no grid
     dx, dy = np.full(len(launch), 0.5), np.full(len(launch), 0.5)
     if launch.samples > 1:
         dx = (launch.sample % side + launch.random(0)) / side

@@ -102,7 +102,7 @@ __device__ inline float4 texel() {
     return texCount ? tex2D(tex0, texCoord.x, texCoord.y) : make_float4(1, 1, 1, 1);
 }
 
-// Paths longer than the greatest depth bring nothing; whether light is seen is always asked.
+// Paths longer than the greatest depth return 0; shadow rays are traced at any depth.
 __device__ inline float3 sent_from_here(int type, float3 direction) {
     Payload sent;
     sent.color = make_float3(0, 0, 0);
@@ -130,7 +130,7 @@ extern "C" __global__ void glass() {
     payload.color = xyz(diffuse) + xyz(specular) * sent_from_here(Radiance, mirrored);
 }
 
-// Any hit: what the texture leaves open lets rays through.
+// Any hit: holes of the texture let rays through.
 extern "C" __global__ void alpha_test() {
     if (texel().w <= ALPHA_THRESHOLD)
         ignore_intersection();
@@ -144,7 +144,7 @@ extern "C" __global__ void unoccluded() { payload.color = make_float3(1, 1, 1); 
 // Any hit of shadow rays: the first hit is enough.
 extern "C" __global__ void occluded() { terminate_ray(); }
 
-// What a failed pixel shows.
+// Exception: the colour of a failed pixel.
 extern "C" __global__ void exception() {
     element<float4>(output0, 2, launch_index.x, launch_index.y) = make_float4(1, 0, 1, 1);
 }

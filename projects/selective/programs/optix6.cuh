@@ -1,5 +1,5 @@
-// Variables and calls of OptiX 3 to 6 as programs of this folder use them: what a module must say of
-// a variable (its bytes and its semantic), and the calls that a renderer answers.
+// Variables and calls of OptiX 3 to 6 as programs of this folder use them: the description of a
+// variable in a module (its bytes and its semantic), and the calls that a renderer serves.
 
 #pragma once
 
@@ -7,7 +7,7 @@ struct TypeInfo {
     unsigned magic, bytes;
 };
 
-// A variable that is bound by its name, or by its semantic where it has one.
+// A variable that is bound by its name, or by its semantic if it has one.
 #define VARIABLE(type, name, semantic)                                                        \
     namespace rti_internal_typeinfo {                                                         \
     __device__ TypeInfo name = {0x00796152u, sizeof(type)};                                   \
@@ -17,7 +17,7 @@ struct TypeInfo {
     }                                                                                         \
     __device__ type name;
 
-// Buffers have no type of their own: each access says how large an element is.
+// Buffers have no type of their own: each access gives the size of an element.
 #define BUFFER(name) __device__ char name[1];
 
 struct Ray {
