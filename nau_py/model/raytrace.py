@@ -134,7 +134,7 @@ class InputBuffer(Node):
     weight: Annotated[
         str | None,
         Attr(
-            doc="What weights below 1 mean: all samples, to be blended, or so many of them.",
+            doc="Meaning of weights below 1: parts of the blended colour, or of the samples.",
             values=("blend", "spp"),
         ),
     ] = None

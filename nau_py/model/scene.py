@@ -119,7 +119,8 @@ class Scene(Configured):
 
     name: Annotated[str | None, Attr(doc="Scene name.", required=True)] = None
     type: Annotated[
-        str | None, Attr(doc="How objects are kept; default OctreeUnified.", values=SCENE_TYPES)
+        str | None,
+        Attr(doc="Storage of the objects; default OctreeUnified.", values=SCENE_TYPES),
     ] = None
     filename: Annotated[
         str | None, Attr(doc="One model file; all children are then ignored.", file="model")

@@ -27,7 +27,7 @@ SAMPLER = AttributeSet.of(
         choice("COMPARE_FUNC", "LEQUAL", "LEQUAL GEQUAL LESS GREATER EQUAL NOTEQUAL ALWAYS NEVER"),
         colour("BORDER_COLOR", (0.0, 0.0, 0.0, 0.0), "Colour outside CLAMP_TO_BORDER.", False),
         number("ID", _INT, -1, "OpenGL name.", readonly=True),
-        flag("MIPMAP", False, "Whether the texture has mip levels.", readonly=True),
+        flag("MIPMAP", False, "True if the texture has mip levels.", readonly=True),
     ],
 )
 

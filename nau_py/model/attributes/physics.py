@@ -45,9 +45,14 @@ PHYSICS_MATERIAL = AttributeSet.of(
     [
         choice("SCENE_TYPE", "STATIC", "STATIC RIGID CLOTH PARTICLES CHARACTER DEBUG", "Kind."),
         choice("SCENE_SHAPE", "CUSTOM", "CUSTOM BOX SPHERE CAPSULE", "Shape that collides."),
-        choice("SCENE_CONDITION", "NONE", "GT LT EGT ELT EQ NONE", "Which vertices are held."),
-        vector("SCENE_CONDITION_VALUE", (0.0, 0.0, 0.0, 0.0), "What the condition compares with."),
-        vector("DIRECTION", (0.0, 0.0, 0.0, 1.0), "Where a character looks."),
+        choice(
+            "SCENE_CONDITION",
+            "NONE",
+            "GT LT EGT ELT EQ NONE",
+            "Condition of the held vertices.",
+        ),
+        vector("SCENE_CONDITION_VALUE", (0.0, 0.0, 0.0, 0.0), "Reference of the condition."),
+        vector("DIRECTION", (0.0, 0.0, 0.0, 1.0), "Direction in which a character looks."),
         vector("UP", (0.0, 1.0, 0.0, 1.0), "Up of a character."),
         Attribute("BUFFER", DataType.STRING, (), "Buffer that takes the particles' positions."),
         *(number(name, _FLOAT, 1.0, "See the plug-in.") for name in _NUMBERS.split()),

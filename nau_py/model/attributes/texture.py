@@ -62,7 +62,7 @@ ARRAY_OF_TEXTURES = AttributeSet.of(
         *(number(n, _INT, 1, "See TEXTURE.") for n in ("WIDTH", "HEIGHT", "DEPTH", "LEVELS")),
         number("LAYERS", _INT, 1, "See TEXTURE."),
         number("SAMPLES", _INT, 0, "See TEXTURE."),
-        number("TEXTURE_COUNT", DataType.UINT, 1, "How many textures to create."),
+        number("TEXTURE_COUNT", DataType.UINT, 1, "Number of textures to create."),
         flag("MIPMAP", False, "Allocate mip levels."),
         flag("CREATE_BUFFER", False, "Create a buffer of bindless handles."),
         choice("INTERNAL_FORMAT", "RGBA", _FORMATS, "Texel format; must be given."),

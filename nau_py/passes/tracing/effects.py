@@ -20,6 +20,7 @@ from nau_py.model.linked import Project
 from nau_py.model.raytrace import BUILTIN, Program, RayMaterial, RaytracePass
 from nau_py.passes.frame import FrameContext
 from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
+from nau_py.raytrace.programs.neighbours import list_imported_functions
 from nau_py.raytrace.programs.source import stand_in
 from nau_py.raytrace.tracing.counts import RayCounts
 from nau_py.raytrace.tracing.materials import TracedMaterial
@@ -41,7 +42,10 @@ def _describe_program(project: Project, node: Program, built_in: bool = True) ->
     if node.file == BUILTIN:
         return ProgramFacts(proc, node.location, proc if built_in else "")
     path = stand_in(project.folder, node.file or "")
-    sends = kinds_sent(path, proc) if path is not None else frozenset()
+    sends: frozenset[str] = frozenset()
+    if path is not None:
+        functions = [(path, proc), *list_imported_functions(path)]
+        sends = sends.union(*(kinds_sent(file, name) for file, name in functions))
     return ProgramFacts(f"'{proc}' of {node.file}", node.location, "", sends)
 
 

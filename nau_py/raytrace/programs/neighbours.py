@@ -69,3 +69,52 @@ def read_neighbour_imports(tree: ast.Module, folder: Path) -> NeighbourImports:
             if path is not None:
                 found.names |= {a.asname or a.name: (path, a.name) for a in node.names}
     return found
+
+
+def list_imported_functions(path: Path) -> list[tuple[Path, str]]:
+    """Return file and name of the functions that a program can call in its neighbours.
+
+    These are the functions that the file imports by name, all functions of modules that it imports
+    whole, and those that the neighbours import in turn.
+    """
+    found: dict[tuple[Path, str], None] = {}
+    todo, done = [path], {path}
+    while todo:
+        for other, name in _list_imports(todo.pop()):
+            found[other, name] = None
+            if other not in done:
+                done.add(other)
+                todo.append(other)
+    return list(found)
+
+
+def _list_imports(path: Path) -> tuple[tuple[Path, str], ...]:
+    """Return file and name of the functions that a file itself imports from neighbours."""
+    tree = _parse(path)
+    if tree is None:
+        return ()
+    imports = read_neighbour_imports(tree, path.parent)
+    whole = [*imports.modules.values(), *(p for p, name in imports.names.values() if name == "*")]
+    found = [(other, name) for other, name in imports.names.values() if name != "*"]
+    for other in whole:
+        functions = _parse(other)
+        body = functions.body if functions is not None else []
+        found += [(other, node.name) for node in body if isinstance(node, ast.FunctionDef)]
+    return tuple(found)
+
+
+def _parse(path: Path) -> ast.Module | None:
+    """Parse a Python file; each version of it once. None if it cannot be read or parsed."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return _parse_version(path, found.st_mtime_ns, found.st_size)
+
+
+@lru_cache(maxsize=256)
+def _parse_version(path: Path, time: int, size: int) -> ast.Module | None:
+    try:
+        return ast.parse(path.read_bytes(), str(path))
+    except (OSError, SyntaxError, ValueError):
+        return None

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import nau_py
+from nau_py.model.node import Setting
 from nau_py.run.reload import HotReload
 from nau_py.run.renderer import Renderer
 from nau_py.run.used_files import PROGRAM, used_files
@@ -179,3 +180,32 @@ def test_errors_of_a_neighbour_have_its_lines(
     assert found.rule == "T010"
     assert (found.location.file, found.location.line) == (str(wall.path / file), line)
     assert words in found.message
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "import common\n\n\ndef shade(hits):\n    return common.bounce(hits)\n",
+        "from common import bounce\n\n\ndef shade(hits):\n    return bounce(hits)\n",
+        "from common import *\n\n\ndef shade(hits):\n    return bounce(hits)\n",
+        "from second import bounce as b\n\n\ndef shade(hits):\n    return b(hits)\n",
+    ],
+)
+def test_rays_that_a_neighbour_sends_are_called_for(
+    wall: Folder, ray_project: RayProject, text: str
+) -> None:
+    """The analysis of effects reads the neighbours too, so that it leaves out no ray of theirs."""
+    wall.write(
+        "common.py",
+        "def bounce(hits):\n"
+        "    return hits.trace('Radiance', hits.facing_normal, kind='reflection')[:, :3] + 0.5\n",
+    )
+    wall.write("second.py", "from common import bounce\n")
+    wall.write("prog.py", text)
+    project = ray_project(BINDING)
+    project.pipelines[0].passes[0].settings["MAX_DEPTH"] = Setting((2,))
+    frame = nau_py.Renderer(project).render()
+    reflection = next(e for e in frame.report["effects"] if e["effect"] == "reflection")
+    assert reflection["called_for"]
+    assert reflection["status"] == "simulated"
+    assert frame.report["totals"]["rays"]["reflection"] > 0
