@@ -36,6 +36,17 @@ def test_links_lead_somewhere() -> None:
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 
 
+def test_no_sentence_begins_with_a_question_word() -> None:
+    """Headings may: a reader's question is a heading. The reference has the texts of the models."""
+    words = "What|Whose|Whether|Where|Which|How"
+    for page in [ROOT / "README.md", *DOCS.rglob("*.md"), *(ROOT / "projects").rglob("*.md")]:
+        if page.name == "reference.md":
+            continue
+        for line in page.read_text().splitlines():
+            found = re.search(rf"(^|[.:;|] )({words}) ", line) if line[:1] != "#" else None
+            assert found is None, f"{page.name}: {line}"
+
+
 def test_the_reference_is_up_to_date() -> None:
     from tools.reference import reference_page
 
