@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,8 @@ import pytest
 from PIL import Image
 
 import nau_py
+import nau_py.scene.readers.loading  # registers the readers
+from nau_py.scene.readers.registry import READERS, Model
 
 ROOT = Path(__file__).parent.parent
 PROJECTS = ROOT / "projects"
@@ -57,6 +60,24 @@ class Folder:
 
     def load(self, name: str = "project.xml") -> nau_py.Project:
         return nau_py.load(self.path / name)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def plaza() -> Iterator[None]:
+    """Read the OBJ file of the plaza once: a hundred tests draw it, and reading takes half a second."""
+    read = READERS[".obj"]
+    kept: dict[bool, Model] = {}
+
+    def read_once(path: Path, swap_yz: bool) -> Model:
+        if path.resolve() != PROJECTS / "models" / "plaza" / "plaza.obj":
+            return read(path, swap_yz)
+        if swap_yz not in kept:
+            kept[swap_yz] = read(path, swap_yz)
+        return copy.deepcopy(kept[swap_yz])
+
+    READERS[".obj"] = read_once
+    yield
+    READERS[".obj"] = read
 
 
 @pytest.fixture
