@@ -30,9 +30,8 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 
 from nau_py.diagnostics.location import NOWHERE
-from nau_py.raytrace.kernels.core import codes
-from nau_py.raytrace.programs.batch import PINHOLE
-from nau_py.raytrace.programs.description import CLOSEST_HIT, MISS
+from nau_py.raytrace.programs.catalogue import CODES
+from nau_py.raytrace.programs.description import CLOSEST_HIT, MISS, RAY_GENERATION
 from nau_py.raytrace.tracing.accelerator import Accelerator, embree_version
 from nau_py.raytrace.tracing.camera_rays import encode_camera, make_camera_rays
 from nau_py.raytrace.tracing.dispatch import run_launch
@@ -127,9 +126,9 @@ def work(
     count = len(geometry.materials)
     values: dict[str, tuple[Any, ...]] = {a.name: a.default for a in LIGHT if a.default}
     values |= {"NORMALIZED_DIRECTION": (*SUN, 0.0), "DIRECTION": (*SUN, 0.0)}
-    shade = bound(user_shade) if user else bound(None, codes.LAMBERT)
-    miss = bound(user_miss) if user else bound(None, codes.BACKGROUND)
-    lit = bound(user_lit) if user else bound(None, codes.UNOCCLUDED)
+    shade = bound(user_shade) if user else bound(None, CODES[CLOSEST_HIT]["lambert"])
+    miss = bound(user_miss) if user else bound(None, CODES[MISS]["background"])
+    lit = bound(user_lit) if user else bound(None, CODES[MISS]["unoccluded"])
     scene = TracedScene(
         geometry,
         Accelerator(geometry),
@@ -148,7 +147,7 @@ def work(
     )
     rect = Rect(0.0, 0.0, float(size), float(size))
     generation = RayGeneration(
-        bound(user_generate) if user else bound(None, PINHOLE),
+        bound(user_generate) if user else bound(None, CODES[RAY_GENERATION]["pinhole"]),
         encode_camera(camera, rect, geometry.centre),
         make_camera_rays(camera, rect, geometry.centre),
         size,

@@ -9,6 +9,7 @@ from nau_py.formats import load_project
 from nau_py.graph import Plan, make_plan
 from nau_py.model.linked import Project
 from nau_py.passes import pass_classes
+from nau_py.raytrace.programs import catalogue  # noqa: F401  (adds attributes to materials)
 from nau_py.rules.engine import lint as find_faults
 from nau_py.run.pipeline_choice import choose_pipeline
 from nau_py.scene.names import list_default_materials

@@ -144,7 +144,7 @@ def reference_page() -> str:
         waiting = found + ([*PASS_CLASSES.values()] if cls is Pass else []) + waiting
     lines += _sets()
     lines += ["", "## Built-in ray programs", "", "| proc | kind | |", "|---|---|---|"]
-    lines += [f"| `{n}` | {kind} | {doc} |" for n, (kind, doc) in BUILTIN_PROGRAMS.items()]
+    lines += [f"| `{p.name}` | {p.kind} | {p.doc} |" for p in BUILTIN_PROGRAMS.values()]
     lines += ["", "## Knobs of accuracy", "", "| knob | values | |", "|---|---|---|"]
     for knob, kind in KNOBS.items():
         values = ", ".join(f"`{w}`" for w in kind.words) or kind.attribute or "0.01 to 1"

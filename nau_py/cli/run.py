@@ -17,7 +17,7 @@ from nau_py.cli.common import USAGE, guarded, say, size_of, write_result
 from nau_py.cli.doctor import examine
 from nau_py.cli.progress import progress_bar
 from nau_py.diagnostics.diagnostic import Severity
-from nau_py.model.effects import wanted
+from nau_py.model.effects import parse_effects
 from nau_py.passes.frame import RunOptions
 from nau_py.run.report import joined
 
@@ -54,10 +54,9 @@ class Programs(StrEnum):
 
 
 def _effects(text: str | None) -> str | None:
-
     try:
         if text is not None:
-            wanted(text)
+            parse_effects(text)
     except ValueError as problem:
         raise typer.BadParameter(str(problem)) from None
     return text

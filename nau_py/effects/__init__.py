@@ -1,1 +1,1 @@
-"""Effects on demand: what a scene calls for, and what is left out for which reason."""
+"""Effects on demand: facts of a scene, the effects that it calls for, the decision on each one."""

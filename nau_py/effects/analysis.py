@@ -1,116 +1,137 @@
-"""What the data of a pass calls for. Nothing is rendered: an effect that is called for here is
-possible; whether it is in view, a frame tells."""
+"""Find the effects that the scene of a pass calls for. Nothing is rendered: an effect that is found
+is possible; only a frame shows if it is in view.
+
+The facts of built-in programs are those of their descriptions
+(:mod:`nau_py.raytrace.programs.builtin`).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from nau_py.diagnostics.location import Location
 from nau_py.effects.facts import MaterialFacts, PassFacts, ProgramFacts
 from nau_py.model.effects import EFFECTS
+from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
+from nau_py.raytrace.programs.description import AlphaTest, BuiltInProgram, Effect, LightUse
 
-ALPHA_THRESHOLD = 0.25
-"""Alpha up to which ``alpha_test`` ignores a hit."""
-LIT = ("lambert", "phong", "blinn_phong", "direct", "path", "fluorescent")
-PATHS = ("path", "fluorescent")
-SPECULAR = ("mirror", "glossy", "dielectric")
-ALPHA = ("alpha_test", "stochastic_alpha", "transparency")
 RAY_KINDS = ("shadow", "reflection", "refraction", "occlusion", "indirect")
 """Effects that are a kind of ray of the same name."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """What calls for an effect. ``material``: its name, empty for lights and cameras."""
+    """Part of a scene that calls for an effect: a material, a light or a camera."""
 
     what: str
     location: Location
     material: str = ""
+    """Name of the material; empty for lights and cameras."""
     chain: bool = False
-    """Whether a built-in specular program sends the rays: their chains end at a small weight."""
+    """A built-in specular program sends the rays: their chains end at a small weight."""
 
 
-def asks_alpha(material: MaterialFacts, program: ProgramFacts) -> bool:
-    """Whether a built-in any-hit program can ignore a hit on the material, or let a part through.
+class Causes:
+    """The causes of each effect, in the order in which they are found."""
 
-    ``alpha_test`` does where alpha is at most 0.25, the others where it is below 1. Interpolated
-    alpha is never below the least of the texels.
-    """
-    if program.proc == "alpha_test":
-        return material.texture_alpha <= ALPHA_THRESHOLD
-    return program.proc in ALPHA and material.alpha < 1.0
+    def __init__(self) -> None:
+        self.found: dict[str, list[Cause]] = {name: [] for name in EFFECTS}
+
+    def add(self, effect: str, cause: Cause) -> None:
+        """Add a cause, unless one with the same words is there."""
+        if not any(known.what == cause.what for known in self.found[effect]):
+            self.found[effect].append(cause)
 
 
-def opaque(facts: PassFacts) -> frozenset[int]:
-    """Materials, by index, whose built-in any-hit programs accept every hit: asking them changes
-    nothing."""
+def description_of(program: ProgramFacts) -> BuiltInProgram | None:
+    """Return the description of a built-in program; None for a program of a file."""
+    return BUILTIN_PROGRAMS.get(program.proc)
+
+
+def alpha_test_of(program: ProgramFacts) -> AlphaTest | None:
+    """Return the alpha test of a built-in any-hit program, or None."""
+    found = description_of(program)
+    return found.alpha if found else None
+
+
+def ignores_hits(material: MaterialFacts, program: ProgramFacts) -> bool:
+    """Test if a built-in any-hit program can ignore a hit on the material by its alpha, or let a
+    part of the light pass. Interpolated alpha is never below the least of the texels."""
+    test = alpha_test_of(program)
+    if test is None:
+        return False
+    alpha = material.alpha if test.uses_diffuse else material.texture_alpha
+    return alpha < 1.0 if test.above is None else alpha <= test.above
+
+
+def has_alpha_test(material: MaterialFacts) -> bool:
+    """Test if a built-in any-hit program of the material depends on alpha."""
+    return any(alpha_test_of(p) for p in material.any_hit)
+
+
+def find_opaque_materials(facts: PassFacts) -> frozenset[int]:
+    """Return the indices of the materials whose built-in any-hit programs accept every hit: running
+    them changes nothing."""
     return frozenset(
         k
         for k, m in enumerate(facts.materials)
-        if any(p.proc in ALPHA for p in m.any_hit) and not any(asks_alpha(m, p) for p in m.any_hit)
+        if has_alpha_test(m) and not any(ignores_hits(m, p) for p in m.any_hit)
     )
 
 
-def called_for(facts: PassFacts) -> dict[str, list[Cause]]:
-    """For each effect, what calls for it; an empty list where nothing does."""
-    found: dict[str, list[Cause]] = {name: [] for name in EFFECTS}
-
-    def add(
-        effect: str, what: str, where: Location, material: str = "", chain: bool = False
-    ) -> None:
-        if not any(c.what == what for c in found[effect]):
-            found[effect].append(Cause(what, where, material, chain))
-
-    specular: list[tuple[MaterialFacts, ProgramFacts]] = []
-    emitting = [m for m in facts.materials if m.strength("EMISSION") > 0]
+def find_causes(facts: PassFacts) -> dict[str, list[Cause]]:
+    """Return the causes of each effect; an empty list for an effect that nothing calls for."""
+    causes = Causes()
+    specular: list[Cause] = []
+    emitting = any(m.strength("EMISSION") > 0 for m in facts.materials)
     for material, program in facts.programs:
         name = f"material '{material.name}'" if material else program.label
         own = material.name if material else ""
         for kind in program.sends & set(RAY_KINDS):
-            add(kind, f"{name} by {program.label}" if material else name, program.location, own)
+            words = f"{name} by {program.label}" if material else name
+            causes.add(kind, Cause(words, program.location, own))
         if material is None:
             continue
-        if program.proc in SPECULAR:
-            shows = program.proc == "dielectric" or material.strength("SPECULAR") > 0
-            if shows:
-                add("reflection", name, program.location, own, chain=True)
-                specular.append((material, program))
-            if program.proc == "dielectric":
-                add("refraction", name, program.location, own, chain=True)
-        if asks_alpha(material, program) or (program in material.any_hit and not program.proc):
-            add("transparency", name, program.location, own)
-        if program.proc == "ambient_occlusion":
-            add("occlusion", name, program.location, own)
-        if program.proc in LIT:
-            _lit(facts, program, add, bool(emitting))
-        if program.proc in PATHS and facts.max_depth > 1:
-            add("indirect", name, program.location, own)
-            matrix = [f"FLUORESCENCE_{band}" for band in ("RED", "GREEN", "BLUE")]
-            if program.proc == "fluorescent" and any(material.strength(a) > 0 for a in matrix):
-                add("fluorescence", name, program.location, own)
-    if found["indirect"] and emitting:
-        for material, program in specular:
-            add("caustics", f"material '{material.name}'", program.location, material.name)
-    generates = facts.generate is not None and facts.generate.proc == "thin_lens"
-    if generates and facts.aperture > 0 and facts.camera_location is not None:
-        add("depth_of_field", f"camera '{facts.camera}'", facts.camera_location)
-    return found
+        if ignores_hits(material, program) or (program in material.any_hit and not program.proc):
+            causes.add("transparency", Cause(name, program.location, own))
+        description = description_of(program)
+        if description is None:
+            continue
+        for effect in description.effects:
+            if _is_called_for(effect, material, facts):
+                causes.add(effect.name, Cause(name, program.location, own, effect.chain))
+                if effect.chain:
+                    specular.append(Cause(name, program.location, own))
+        _add_lights(causes, facts, program, description.lights, emitting)
+    if causes.found["indirect"] and emitting:
+        for cause in specular:
+            causes.add("caustics", cause)
+    generation = description_of(facts.generate) if facts.generate else None
+    if generation and facts.aperture > 0 and facts.camera_location is not None:
+        for effect in generation.effects:
+            causes.add(effect.name, Cause(f"camera '{facts.camera}'", facts.camera_location))
+    return causes.found
 
 
-def _lit(
-    facts: PassFacts,
-    program: ProgramFacts,
-    add: Callable[[str, str, Location], None],
-    emitting: bool,
+def _is_called_for(effect: Effect, material: MaterialFacts, facts: PassFacts) -> bool:
+    if effect.recursive and facts.max_depth <= 1:
+        return False
+    return not effect.attributes or any(material.strength(a) > 0 for a in effect.attributes)
+
+
+def _add_lights(
+    causes: Causes, facts: PassFacts, program: ProgramFacts, use: LightUse, emitting: bool
 ) -> None:
-    """Shadows and penumbrae of the lights that a lit program looks at."""
-    simple = program.proc in ("lambert", "phong", "blinn_phong")
-    shadows = any(t.lower() == "shadow" for t in facts.ray_types) or not simple
-    for light in facts.lights[:1] if simple else facts.lights:
+    """Add shadows and penumbrae of the lights that a program samples."""
+    if use is LightUse.NONE:
+        return
+    first = use is LightUse.FIRST
+    shadows = not first or any(t.lower() == "shadow" for t in facts.ray_types)
+    for light in facts.lights[:1] if first else facts.lights:
+        cause = Cause(f"light '{light.name}'", light.location)
         if shadows:
-            add("shadow", f"light '{light.name}'", light.location)
+            causes.add("shadow", cause)
         if light.has_area:
-            add("penumbra", f"light '{light.name}'", light.location)
-    if program.proc in PATHS and emitting and facts.max_depth > 1:
-        add("shadow", "emissive triangles", program.location)
+            causes.add("penumbra", cause)
+    if use is LightUse.EMITTERS and emitting and facts.max_depth > 1:
+        causes.add("shadow", Cause("emissive triangles", program.location))

@@ -1,4 +1,4 @@
-"""What is simulated and what is left out, each with its reason and its bound."""
+"""Decide for each effect if it is simulated, with the reason and the bound of the error."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from nau_py.effects.analysis import RAY_KINDS, Cause
 from nau_py.model.effects import EFFECTS
 
 EXACT = "exact"
-"""The bound of what changes no bit of the picture."""
+"""Bound of a decision that changes no bit of the picture."""
 UNKNOWN = "not bounded"
-"""That of an effect that is called for and left out at the user's word."""
+"""Bound of an effect that is called for, and left out because the user requests that."""
 NO_CAUSE = "nothing calls for it"
 
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """About one effect. ``bound``: how much the picture can differ from one with the effect."""
+    """Decision on one effect. ``bound``: limit of the difference from a picture with the effect."""
 
     effect: str
     causes: tuple[Cause, ...]
@@ -31,26 +31,29 @@ class Decision:
 
     @property
     def kind(self) -> str:
-        """The kind of ray that the effect is, empty for none."""
+        """Kind of ray that the effect consists of; empty for none."""
         return self.effect if self.effect in RAY_KINDS else ""
 
 
-def decide(
-    wanted: frozenset[str] | None,
-    calls: Mapping[str, list[Cause]],
+def decide_effects(
+    requested: frozenset[str] | None,
+    causes_of: Mapping[str, list[Cause]],
     negligible: float,
-    said: str,
+    source: str,
 ) -> list[Decision]:
-    """A decision for each effect: what the scene calls for (``wanted`` None), or exactly those
-    that are wanted. ``negligible``: weight at which specular chains end. ``said``: who wants them,
-    for the reasons."""
+    """Decide on each effect: simulate those that the scene calls for (``requested`` None), or
+    exactly those that are requested.
+
+    ``causes_of``: by effect, from ``find_causes``. ``negligible``: weight at which specular chains
+    end. ``source``: option or element of the request, for the reasons.
+    """
     found = []
     for effect in EFFECTS:
-        causes = tuple(calls[effect])
-        simulated = bool(causes) if wanted is None else effect in wanted
+        causes = tuple(causes_of[effect])
+        simulated = bool(causes) if requested is None else effect in requested
         reason = ""
         if not simulated:
-            reason = f"{said} leaves it out" if causes else NO_CAUSE
+            reason = f"{source} leaves it out" if causes else NO_CAUSE
         if simulated and negligible > 0 and any(c.chain for c in causes):
             bound = f"chains end at {negligible:g} of the radiance"
         elif simulated or not causes:

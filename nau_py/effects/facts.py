@@ -1,4 +1,4 @@
-"""What the analysis looks at: materials with their programs, lights, camera. Only data."""
+"""Facts that the analysis reads: materials with their programs, lights, camera. Only data."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ Colour = tuple[float, ...]
 
 @dataclass(frozen=True, slots=True)
 class ProgramFacts:
-    """A program of a material or of the pass. ``proc``: its built-in name, or "" for one of a
-    file; ``sends``: the kinds of rays that a Python one asks for in so many words."""
+    """A program of a material or of the pass. ``proc``: its built-in name, or "" for a program of
+    a file; ``sends``: the kinds of rays that a Python program names in its calls of ``trace``."""
 
     label: str
     location: Location
@@ -27,7 +27,7 @@ class ProgramFacts:
 @dataclass(frozen=True, slots=True)
 class MaterialFacts:
     """A material of the traced geometry. ``closest`` and ``any_hit``: its programs, all ray types;
-    ``colours`` by attribute; ``least_alpha`` of its texture and its DIFFUSE, 0 to 1."""
+    ``colours`` by attribute; ``texture_alpha``: the least alpha of its texture, 0 to 1."""
 
     name: str
     closest: tuple[ProgramFacts, ...] = ()
@@ -36,18 +36,20 @@ class MaterialFacts:
     texture_alpha: float = 1.0
 
     def strength(self, attribute: str) -> float:
-        """The largest of the first three components of a colour; 0 where there is none."""
+        """Return the largest of the first three components of a colour; 0 for an unknown one."""
         return max(self.colours.get(attribute, (0.0,))[:3], default=0.0)
 
     @property
     def alpha(self) -> float:
-        """The least alpha, of texture and DIFFUSE."""
+        """Least alpha of texture and DIFFUSE."""
         diffuse = self.colours.get("DIFFUSE", (1.0,) * 4)
         return self.texture_alpha * (diffuse[3] if len(diffuse) > 3 else 1.0)
 
 
 @dataclass(frozen=True, slots=True)
 class LightFacts:
+    """A light of the pass. ``has_area``: its shape has a size above 0."""
+
     name: str
     location: Location
     has_area: bool = False
@@ -69,7 +71,7 @@ class PassFacts:
 
     @property
     def programs(self) -> list[tuple[MaterialFacts | None, ProgramFacts]]:
-        """Every program that can send rays, with its material."""
+        """Programs that can send rays, each with its material."""
         own = [self.generate] if self.generate else []
         found: list[tuple[MaterialFacts | None, ProgramFacts]] = [
             (None, p) for p in (*own, *self.misses)
@@ -77,19 +79,20 @@ class PassFacts:
         return found + [(m, p) for m in self.materials for p in (*m.closest, *m.any_hit)]
 
 
-def kinds_sent(path: Path, proc: str) -> frozenset[str]:
-    """The kinds of rays that a Python program names in its calls of ``trace``, and what functions
-    of its file that it calls name. Reads the file, runs nothing; empty where it has no parse."""
+def find_sent_kinds(path: Path, proc: str) -> frozenset[str]:
+    """Find the kinds of rays that a Python program names in its calls of ``trace``, also in the
+    functions of its file that it calls. Reads the file, runs nothing; empty if it cannot be parsed.
+    """
     try:
         found = path.stat()
     except OSError:
         return frozenset()
-    return _kinds_sent(path, proc, found.st_mtime_ns, found.st_size)
+    return _find_sent_kinds(path, proc, found.st_mtime_ns, found.st_size)
 
 
 @lru_cache(maxsize=256)
-def _kinds_sent(path: Path, proc: str, time: int, size: int) -> frozenset[str]:
-    """Once for each version of a file."""
+def _find_sent_kinds(path: Path, proc: str, time: int, size: int) -> frozenset[str]:
+    """Parse each version of a file once."""
     try:
         tree = ast.parse(path.read_bytes(), str(path))
     except (OSError, SyntaxError, ValueError):
@@ -112,7 +115,7 @@ def _kinds_sent(path: Path, proc: str, time: int, size: int) -> frozenset[str]:
 
 
 def _named(call: ast.Call) -> set[str]:
-    """The kind, else the ray type, of a call of ``trace``."""
+    """Return the kind, else the ray type, of a call of ``trace``."""
     if not (isinstance(call.func, ast.Attribute) and call.func.attr == "trace"):
         return set()
     given = {k.arg: k.value for k in call.keywords}

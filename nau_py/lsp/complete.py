@@ -275,8 +275,8 @@ def _propose_by_siblings(
             yield Completion(name, name, "name", "ray type")
     elif key == "proc":
         if given.get("file") == BUILTIN:
-            for name, (kind, doc) in BUILTIN_PROGRAMS.items():
-                yield Completion(name, name, "value", kind.lower(), doc)
+            for name, program in BUILTIN_PROGRAMS.items():
+                yield Completion(name, name, "value", program.kind.lower(), program.doc)
         else:
             source = stand_in(project.folder, given.get("file", ""))
             for name in list_procedures(source) if source is not None else {}:

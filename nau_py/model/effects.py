@@ -20,12 +20,12 @@ EFFECTS: dict[str, str] = {
     "depth_of_field": "Points of a lens; without it, a pinhole.",
     "fluorescence": "Light that comes back in other bands.",
 }
-"""Every effect, and what leaving it out leaves out."""
+"""Every effect, and the part of the simulation that it is."""
 AUTO, ALL, NONE = "auto", "all", "none"
 
 
 class Effects(Node):
-    """Which effects are simulated."""
+    """Effects that are simulated."""
 
     simulate: Annotated[
         str | None,
@@ -36,8 +36,8 @@ class Effects(Node):
     ] = None
 
 
-def wanted(text: str) -> frozenset[str] | None:
-    """The effects that a list names; None for ``auto``. Raises ValueError."""
+def parse_effects(text: str) -> frozenset[str] | None:
+    """Return the effects that a list names; None for ``auto``. Raises ValueError."""
     names = re.split(r"[\s,]+", text.strip())
     if names == [AUTO]:
         return None

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.model.accuracy import Accuracy, Knob
-from nau_py.model.effects import wanted
+from nau_py.model.effects import parse_effects
 from nau_py.model.knob import IdleKnob, find_knob_target
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
@@ -119,6 +119,6 @@ def check_effects(context: LintContext) -> Iterator[Diagnostic]:
     if node is None or node.simulate is None:
         return
     try:
-        wanted(node.simulate)
+        parse_effects(node.simulate)
     except ValueError as problem:
         yield A006.at(node.where("simulate"), f"simulate of <effects>: {problem}")

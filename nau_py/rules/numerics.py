@@ -8,8 +8,10 @@ from math import isfinite
 from nau_py.diagnostics.catalogue import ERROR, WARNING, rule
 from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.diagnostics.location import Location
+from nau_py.model.attributes import BUILT_IN
 from nau_py.model.linked import Project
 from nau_py.model.node import Configured, Setting
+from nau_py.model.values import DataType
 from nau_py.rules.registry import LintContext, check
 
 Q001 = rule(
@@ -143,17 +145,7 @@ def check_lights(context: LintContext) -> Iterator[Diagnostic]:
 def check_materials(context: LintContext) -> Iterator[Diagnostic]:
     """Check the colours of library materials, and the energy of fluorescence."""
     project = context.project
-    names = [
-        "DIFFUSE",
-        "SPECULAR",
-        "EMISSION",
-        "AMBIENT",
-        "ABSORPTION",
-        "SHININESS",
-        "ROUGHNESS",
-        "INDEX_OF_REFRACTION",
-        *(f"FLUORESCENCE_{band}" for band in BANDS),
-    ]
+    names = [a.name for a in BUILT_IN["COLOR"] if a.type is not DataType.INT]
     for library in project.libraries:
         for material in library.materials:
             if material.color is None:

@@ -94,7 +94,7 @@ def _program(
 
 def _built_in(program: Program, kind: str, label: str) -> Iterator[Diagnostic]:
     proc = program.proc or ""
-    fitting = [name for name, (of, _) in BUILTIN_PROGRAMS.items() if of == kind]
+    fitting = [p.name for p in BUILTIN_PROGRAMS.values() if p.kind == kind]
     if proc not in fitting:
         yield T006.at(
             program.where("proc"),

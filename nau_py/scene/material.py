@@ -11,7 +11,7 @@ from nau_py.model.material import ImageUnits, Material, ValueOf
 from nau_py.model.node import Setting
 from nau_py.model.texture import ArrayOfTextures
 from nau_py.model.values import Scalar
-from nau_py.scene.readers.model_material import DEFAULT_COLOURS, ModelMaterial
+from nau_py.scene.readers.model_material import ModelMaterial, default_colours
 
 OLD_DEFAULT = DEFAULT_LIBRARY.lstrip("_")
 Settings = dict[str, Setting]
@@ -142,7 +142,7 @@ def list_uniform_sources(values: list[ValueOf], library: str) -> tuple[UniformSo
 def make_default_material(project: Project, name: str) -> RenderMaterial:
     """Copy ``__nauDefault`` as ``name``, in the default library."""
     found = project.material(DEFAULT_LIBRARY, "__nauDefault")
-    colours = dict(DEFAULT_COLOURS)
+    colours = default_colours()
     material = RenderMaterial(name, DEFAULT_LIBRARY, colours)
     if found is not None and found[1].shader is not None:
         material.uniforms = list_uniform_sources(found[1].shader.values, DEFAULT_LIBRARY)

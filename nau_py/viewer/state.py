@@ -12,7 +12,7 @@ import numpy as np
 
 from nau_py.api import lint, load
 from nau_py.diagnostics.diagnostic import Diagnostic, Severity
-from nau_py.model.effects import wanted as effects_wanted
+from nau_py.model.effects import parse_effects
 from nau_py.model.linked import Project
 from nau_py.model.pipeline import Pipeline
 from nau_py.model.project import ProjectFile
@@ -230,7 +230,7 @@ class ViewerState:
     def _do_effects(self, command: dict[str, Any]) -> None:
         text = str(command.get("value") or "").strip()
         if text:
-            effects_wanted(text)
+            parse_effects(text)
         self.effects = text or None
 
     def _do_retry(self, _: dict[str, Any]) -> None:

@@ -7,16 +7,16 @@ from pathlib import Path
 import pytest
 
 from nau_py.diagnostics.location import Location
-from nau_py.effects.analysis import called_for, opaque
-from nau_py.effects.decision import EXACT, UNKNOWN, decide
+from nau_py.effects.analysis import find_causes, find_opaque_materials
+from nau_py.effects.decision import EXACT, UNKNOWN, decide_effects
 from nau_py.effects.facts import (
     LightFacts,
     MaterialFacts,
     PassFacts,
     ProgramFacts,
-    kinds_sent,
+    find_sent_kinds,
 )
-from nau_py.model.effects import EFFECTS, wanted
+from nau_py.model.effects import EFFECTS, parse_effects
 
 HERE = Location("project.xml", 7, 3)
 
@@ -41,7 +41,7 @@ def facts(
 
 
 def effects(found: PassFacts) -> set[str]:
-    return {name for name, causes in called_for(found).items() if causes}
+    return {name for name, causes in find_causes(found).items() if causes}
 
 
 SUN = LightFacts("Sun", HERE)
@@ -71,7 +71,7 @@ PANEL = LightFacts("Panel", HERE, has_area=True)
                camera="C", camera_location=HERE), set()),
     ],
 )  # fmt: skip
-def test_what_is_called_for(found: PassFacts, expected: set[str]) -> None:
+def test_causes_of_a_scene(found: PassFacts, expected: set[str]) -> None:
     light = {"shadow"} if any(m.name == "Lamp" for m in found.materials) and found.lights else set()
     assert effects(found) == expected | light
 
@@ -82,7 +82,7 @@ def test_a_mirror_that_shows_nothing_calls_for_nothing() -> None:
 
 
 def test_causes_name_material_and_place() -> None:
-    cause = called_for(facts("mirror"))["reflection"][0]
+    cause = find_causes(facts("mirror"))["reflection"][0]
     assert (cause.what, cause.location, cause.material) == ("material 'M'", HERE, "M")
 
 
@@ -105,15 +105,7 @@ def test_opaque_materials_need_no_any_hit() -> None:
         MaterialFacts("E", (), (), {}, 0.0),
         MaterialFacts("F", (), (ProgramFacts("mine", HERE),), {}, 1.0),
     ]
-    assert opaque(PassFacts(tuple(cards))) == {0, 3}
-
-
-def test_the_threshold_is_the_engines() -> None:
-    """The analysis may not import the engine; both must mean the same alpha."""
-    from nau_py.effects import analysis
-    from nau_py.raytrace.kernels.intersect import visibility
-
-    assert analysis.ALPHA_THRESHOLD == visibility.ALPHA_THRESHOLD
+    assert find_opaque_materials(PassFacts(tuple(cards))) == {0, 3}
 
 
 def test_kinds_of_a_python_program(tmp_path: Path) -> None:
@@ -127,33 +119,35 @@ def test_kinds_of_a_python_program(tmp_path: Path) -> None:
         "def lit(hits):\n    return hits.trace('Shadow', 0)\n"
         "def plain(hits):\n    return hits.other(kind='occlusion')\n"
     )
-    assert kinds_sent(file, "glass") == {"reflection", "refraction"}
-    assert kinds_sent(file, "__closesthit__glass") == {"reflection", "refraction"}
-    assert kinds_sent(file, "lit") == {"shadow"}
-    assert kinds_sent(file, "plain") == frozenset()
-    assert kinds_sent(file, "absent") == frozenset()
+    assert find_sent_kinds(file, "glass") == {"reflection", "refraction"}
+    assert find_sent_kinds(file, "__closesthit__glass") == {"reflection", "refraction"}
+    assert find_sent_kinds(file, "lit") == {"shadow"}
+    assert find_sent_kinds(file, "plain") == frozenset()
+    assert find_sent_kinds(file, "absent") == frozenset()
     file.write_text("def plain(hits):\n    return hits.trace('R', 0, kind='occlusion')\n")
-    assert kinds_sent(file, "plain") == {"occlusion"}
-    assert kinds_sent(tmp_path / "none.py", "plain") == frozenset()
+    assert find_sent_kinds(file, "plain") == {"occlusion"}
+    assert find_sent_kinds(tmp_path / "none.py", "plain") == frozenset()
 
 
 def test_a_python_program_calls_for_what_it_sends() -> None:
     sends = ProgramFacts("'glass' of mine.py", HERE, "", frozenset({"reflection", "mine"}))
-    found = called_for(PassFacts((MaterialFacts("M", (sends,)),)))
+    found = find_causes(PassFacts((MaterialFacts("M", (sends,)),)))
     assert [c.what for c in found["reflection"]] == ["material 'M' by 'glass' of mine.py"]
     assert effects(PassFacts((MaterialFacts("M", (sends,)),))) == {"reflection"}
 
 
 def test_decisions() -> None:
-    calls = called_for(facts("mirror", lights=(SUN,)))
-    auto = {d.effect: d for d in decide(None, calls, 1e-4, "--effects")}
+    calls = find_causes(facts("mirror", lights=(SUN,)))
+    auto = {d.effect: d for d in decide_effects(None, calls, 1e-4, "--effects")}
     assert auto["reflection"].simulated
     assert "0.0001" in auto["reflection"].bound
     assert not auto["refraction"].simulated
     assert (auto["refraction"].reason, auto["refraction"].bound) == ("nothing calls for it", EXACT)
-    everything = decide(wanted("all"), calls, 0.0, "--effects")
+    everything = decide_effects(parse_effects("all"), calls, 0.0, "--effects")
     assert all(d.simulated and d.bound == EXACT for d in everything)
-    listed = {d.effect: d for d in decide(wanted("shadow"), calls, 1e-4, "--effects")}
+    listed = {
+        d.effect: d for d in decide_effects(parse_effects("shadow"), calls, 1e-4, "--effects")
+    }
     assert listed["shadow"].simulated
     assert listed["reflection"].reason == "--effects leaves it out"
     assert listed["reflection"].bound == UNKNOWN
@@ -161,9 +155,9 @@ def test_decisions() -> None:
 
 
 def test_lists_of_effects() -> None:
-    assert wanted("auto") is None
-    assert wanted(" all ") == frozenset(EFFECTS)
-    assert wanted("none") == frozenset()
-    assert wanted("shadow, reflection") == {"shadow", "reflection"}
+    assert parse_effects("auto") is None
+    assert parse_effects(" all ") == frozenset(EFFECTS)
+    assert parse_effects("none") == frozenset()
+    assert parse_effects("shadow, reflection") == {"shadow", "reflection"}
     with pytest.raises(ValueError, match=r"no effect 'shadows'; .*did you mean 'shadow'"):
-        wanted("shadows")
+        parse_effects("shadows")

@@ -32,7 +32,7 @@ def surface(
     v: F32,  # type: ignore[type-arg]
 ) -> tuple[F32, F32, F32]:
     """Positions, face normals and error bounds at barycentrics."""
-    record = np.zeros(1, SCENE)
+    record = np.zeros(1, SCENE.dtype)
     record["vertices"], record["triangles"] = made.vertices.ctypes.data, made.triangles.ctypes.data
     position, normal = np.empty((2, len(u), 3), np.float32)
     bound = np.empty(len(u), np.float32)

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import nau_py
-from nau_py.raytrace.programs.batch import CODES, FUNCTIONS
-from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
+from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS, CODES, FUNCTIONS
 from tests.conftest import Folder, RayProject
 
 USER = """\
@@ -36,7 +35,7 @@ def fails(project: nau_py.Project, **options: object) -> nau_py.Diagnostic:
 def test_the_listed_builtins_are_the_engines() -> None:
     engine = {(n, k) for table in (CODES, FUNCTIONS) for k, names in table.items() for n in names}
     engine.add(("material", "CLOSEST_HIT"))  # made by the pass: it needs OpenGL
-    assert engine == {(name, kind) for name, (kind, _) in BUILTIN_PROGRAMS.items()}
+    assert engine == {(p.name, p.kind) for p in BUILTIN_PROGRAMS.values()}
 
 
 @pytest.mark.parametrize(

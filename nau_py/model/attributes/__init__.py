@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from nau_py.model.attribute import Attribute, AttributeSet
 from nau_py.model.attributes import (
     bindings,
@@ -53,6 +55,18 @@ BUILT_IN: dict[str, AttributeSet] = {
     )
 }
 """Attribute sets by type. ``TEXTURE_SAMPLER`` is the only one that a ``valueof`` cannot name."""
+
+
+def declare_attributes(type_: str, attributes: Iterable[Attribute]) -> None:
+    """Add attributes that a part of nau_py reads to the set of ``type_``, before projects are read.
+
+    Raises ValueError for a name that another attribute has.
+    """
+    known = BUILT_IN[type_].attributes
+    for attribute in attributes:
+        if known.setdefault(attribute.name, attribute) != attribute:
+            raise ValueError(f"{type_} has another attribute '{attribute.name}' already")
+
 
 OBJECT_TYPES = tuple(name for name in BUILT_IN if name != "TEXTURE_SAMPLER")
 

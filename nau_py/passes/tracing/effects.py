@@ -6,19 +6,25 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from nau_py.effects.analysis import ALPHA, called_for, opaque
-from nau_py.effects.decision import Decision, decide
+from nau_py.effects.analysis import (
+    description_of,
+    find_causes,
+    find_opaque_materials,
+    has_alpha_test,
+)
+from nau_py.effects.decision import Decision, decide_effects
 from nau_py.effects.facts import (
     LightFacts,
     MaterialFacts,
     PassFacts,
     ProgramFacts,
-    kinds_sent,
+    find_sent_kinds,
 )
-from nau_py.model.effects import ALL, AUTO, wanted
+from nau_py.model.effects import ALL, AUTO, parse_effects
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import BUILTIN, Program, RayMaterial, RaytracePass
 from nau_py.passes.frame import FrameContext
+from nau_py.raytrace.programs.catalogue import EFFECT_ATTRIBUTES
 from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.programs.neighbours import list_imported_functions
 from nau_py.raytrace.programs.source import stand_in
@@ -27,13 +33,6 @@ from nau_py.raytrace.tracing.materials import TracedMaterial
 from nau_py.raytrace.tracing.simulated import NEGLIGIBLE, SimulatedEffects
 from nau_py.scene.camera import CameraState
 from nau_py.scene.lights import LightState
-
-_COLOURS = (
-    "DIFFUSE",
-    "SPECULAR",
-    "EMISSION",
-    *(f"FLUORESCENCE_{band}" for band in ("RED", "GREEN", "BLUE")),
-)
 
 
 def _describe_program(project: Project, node: Program, built_in: bool = True) -> ProgramFacts:
@@ -45,7 +44,7 @@ def _describe_program(project: Project, node: Program, built_in: bool = True) ->
     sends: frozenset[str] = frozenset()
     if path is not None:
         functions = [(path, proc), *list_imported_functions(path)]
-        sends = sends.union(*(kinds_sent(file, name) for file, name in functions))
+        sends = sends.union(*(find_sent_kinds(file, name) for file, name in functions))
     return ProgramFacts(f"'{proc}' of {node.file}", node.location, "", sends)
 
 
@@ -70,8 +69,8 @@ def collect_facts(
             MaterialFacts(
                 material.name,
                 programs[CLOSEST_HIT],
-                tuple(p for p in programs[ANY_HIT] if p.proc != "one_sided"),
-                {name: material.colour(name) for name in _COLOURS},
+                tuple(p for p in programs[ANY_HIT] if not _is_geometric(p)),
+                {name: material.colour(name) for name in EFFECT_ATTRIBUTES},
                 texture.least_alpha if texture is not None else 1.0,
             )
         )
@@ -92,6 +91,12 @@ def collect_facts(
         tuple(pass_.ray_types),
         max_depth,
     )
+
+
+def _is_geometric(program: ProgramFacts) -> bool:
+    """Test if a built-in any-hit program is a matter of geometry, not of an effect."""
+    description = description_of(program)
+    return description is not None and description.geometric
 
 
 def _has_area(light: LightState) -> bool:
@@ -131,12 +136,12 @@ def choose_effects(
         text, source = (node.simulate if node else None) or AUTO, "<effects>"
     everything = text.strip() == ALL
     negligible = 0.0 if everything else NEGLIGIBLE
-    chosen = wanted(text)
-    found = decide(chosen, called_for(facts), negligible, source)
+    chosen = parse_effects(text)
+    found = decide_effects(chosen, find_causes(facts), negligible, source)
     left = set() if chosen is None else {d.effect for d in found if not d.simulated}
     simulated = SimulatedEffects(
         skipped=frozenset(d.kind for d in found if d.kind and d.effect in left),
-        opaque=frozenset() if everything else opaque(facts),
+        opaque=frozenset() if everything else find_opaque_materials(facts),
         transparency="transparency" not in left,
         penumbra="penumbra" not in left,
         caustics="caustics" not in left,
@@ -176,7 +181,7 @@ def report_effects(
         if d.reason:
             data["reason"] = d.reason
         if d.effect == "transparency" and d.simulated and opaque_count:
-            asked = sum(1 for m in facts.materials if any(p.proc in ALPHA for p in m.any_hit))
+            asked = sum(1 for m in facts.materials if has_alpha_test(m))
             data["note"] = (
                 f"any-hit programs of {opaque_count} of {asked} materials are not asked: "
                 "nothing of them is transparent (exact)"

@@ -3,9 +3,3 @@
 Arithmetic is float64 on scalars; arrays hold float32. A kernel's result for a ray depends on that
 ray alone, so pictures do not depend on tiles or threads.
 """
-
-from __future__ import annotations
-
-from nau_py.process.numba_import import import_numba
-
-import_numba()

@@ -1,77 +1,115 @@
-"""The ray programs that nau_py brings (``file="builtin"``): names, kinds and what they do.
+"""The built-in ray programs (``file="builtin"``), found in the folder ``builtin`` and registered.
 
-Only the names: lint knows them without loading the engine. A test holds the list to the engine's.
+Importing this module adds their attributes to the materials of projects, and their kernels to the
+tables of the engine. The order, and so the codes, are those of kinds and of file names.
 """
 
 from __future__ import annotations
 
+import pkgutil
+from collections.abc import Callable
+from importlib import import_module
+from typing import Any
+
+from nau_py.model.attribute import Attribute
+from nau_py.model.attributes import declare_attributes
+from nau_py.model.values import DataType
+from nau_py.raytrace.kernels.core import tables
+from nau_py.raytrace.kernels.core.kernel_tables import (
+    ANY_HIT_KERNELS,
+    CLOSEST_HIT_KERNELS,
+    MISS_KERNELS,
+    RAY_GENERATION_KERNELS,
+    KernelTable,
+)
+from nau_py.raytrace.kernels.core.layout import Field
+from nau_py.raytrace.programs import builtin
 from nau_py.raytrace.programs.description import (
     ANY_HIT,
     CLOSEST_HIT,
-    EXCEPTION,
+    KINDS,
     MISS,
     RAY_GENERATION,
+    BuiltInProgram,
 )
 
-BUILTIN_PROGRAMS: dict[str, tuple[str, str]] = {
-    "pinhole": (
-        RAY_GENERATION,
-        "One ray through each sample of the pass camera, of the first ray type.",
-    ),
-    "thin_lens": (
-        RAY_GENERATION,
-        "As `pinhole`, through a lens of the camera's APERTURE, sharp at FOCUS_DISTANCE.",
-    ),
-    "lambert": (
-        CLOSEST_HIT,
-        "The default look: diffuse by the first light, with shadow rays where the pass has a "
-        "ray type called Shadow, plus 0.3 of the diffuse colour, times the texture of unit 0.",
-    ),
-    "phong": (CLOSEST_HIT, "As `lambert`, plus SPECULAR times Phong's highlight of SHININESS."),
-    "blinn_phong": (CLOSEST_HIT, "As `phong`, with Blinn's half vector."),
-    "direct": (
-        CLOSEST_HIT,
-        "DIFFUSE times texture, lit by every light of the pass by its SHAPE, with shadows.",
-    ),
-    "ambient_occlusion": (
-        CLOSEST_HIT,
-        "DIFFUSE times texture, times the part of the sky that is open within OCCLUSION_DISTANCE.",
-    ),
-    "path": (
-        CLOSEST_HIT,
-        "Diffuse path tracing: EMISSION, the pass's lights, emissive triangles by next-event "
-        "estimation with multiple importance sampling, Russian roulette from depth 4.",
-    ),
-    "fluorescent": (
-        CLOSEST_HIT,
-        "As `path`, with light re-emitted in other bands by FLUORESCENCE_RED, _GREEN and _BLUE.",
-    ),
-    "material": (
-        CLOSEST_HIT,
-        "The colour that the material's own GLSL program gives, with the ray's origin for its eye.",
-    ),
-    "emission": (CLOSEST_HIT, "The EMISSION colour."),
-    "mirror": (CLOSEST_HIT, "SPECULAR times what the mirror direction sees."),
-    "glossy": (
-        CLOSEST_HIT,
-        "GGX reflection: SPECULAR as reflectance, ROUGHNESS; multiple scattering added back.",
-    ),
-    "dielectric": (
-        CLOSEST_HIT,
-        "Reflection and refraction: Fresnel, Snell, total internal reflection, ABSORPTION, "
-        "overlaps by PRIORITY.",
-    ),
-    "alpha_test": (ANY_HIT, "Ignores hits where the texture of unit 0 has alpha up to 0.25."),
-    "stochastic_alpha": (
-        ANY_HIT,
-        "Accepts hits with the probability of their alpha: texture of unit 0 times DIFFUSE.",
-    ),
-    "transparency": (
-        ANY_HIT,
-        "Blends by alpha (texture of unit 0 times DIFFUSE): the rest of the ray goes on.",
-    ),
-    "one_sided": (ANY_HIT, "Ignores hits on back faces, as rasterisation culls them."),
-    "background": (MISS, "The clear colour of the render target."),
-    "unoccluded": (MISS, "1: nothing was in the way."),
-    "magenta": (EXCEPTION, "Paints failed samples magenta."),
+KERNEL_TABLES: dict[str, KernelTable] = {
+    RAY_GENERATION: RAY_GENERATION_KERNELS,
+    CLOSEST_HIT: CLOSEST_HIT_KERNELS,
+    ANY_HIT: ANY_HIT_KERNELS,
+    MISS: MISS_KERNELS,
 }
+
+
+def _find_programs() -> dict[str, BuiltInProgram]:
+    """Import the files of built-in programs; return name to program."""
+    names = sorted(module.name for module in pkgutil.iter_modules(builtin.__path__))
+    found: list[BuiltInProgram] = [
+        import_module(f"{builtin.__name__}.{name}").PROGRAM for name in names
+    ]
+    return {program.name: program for kind in KINDS for program in found if program.kind == kind}
+
+
+def _field_of(attribute: Attribute) -> Field:
+    """Return the field of MATERIAL for an attribute."""
+    name = attribute.name.lower()
+    if attribute.type is DataType.INT:
+        return name, "i4"
+    return (name, "f4", 3) if len(attribute.default) > 1 else (name, "f4")
+
+
+def _register(program: BuiltInProgram) -> None:
+    """Add attributes, material fields, tables and kernel of a program to those of its kind."""
+    declare_attributes("COLOR", program.attributes)
+    for attribute in program.attributes:
+        tables.MATERIAL.add(_field_of(attribute))
+    for name in program.tables:
+        tables.add_array(name, "f8")
+    codes = CODES.setdefault(program.kind, {})
+    if program.kernel is not None:
+        codes[program.name] = KERNEL_TABLES[program.kind].add(program.kernel, program.partial)
+
+
+CODES: dict[str, dict[str, int]] = {}
+"""Code by kind and name of the compiled programs."""
+BUILTIN_PROGRAMS = _find_programs()
+"""The built-in programs by name, kind by kind."""
+for _program in BUILTIN_PROGRAMS.values():
+    _register(_program)
+
+FUNCTIONS: dict[str, dict[str, Callable[[Any], Any]]] = {
+    kind: {p.name: p.function for p in BUILTIN_PROGRAMS.values() if p.kind == kind and p.function}
+    for kind in KINDS
+}
+"""Programs written in Python, by kind and name."""
+EFFECT_ATTRIBUTES = tuple(
+    dict.fromkeys(
+        ["DIFFUSE", "EMISSION"]
+        + [
+            name
+            for p in BUILTIN_PROGRAMS.values()
+            if p.kind != RAY_GENERATION
+            for effect in p.effects
+            for name in effect.attributes
+        ]
+    )
+)
+"""Attributes of materials that decide which effects a scene calls for."""
+
+
+def find_zeroed_attributes(effect: str) -> set[str]:
+    """Return the attributes that are taken for 0 where an effect is left out."""
+    return {
+        name
+        for program in BUILTIN_PROGRAMS.values()
+        for e in program.effects
+        if e.name == effect and e.zeroes_attributes
+        for name in e.attributes
+    }
+
+
+def find_code_without_effects(kind: str, code: int) -> int:
+    """Return the code of the program that runs if the effects of program ``code`` are left out."""
+    codes = CODES[kind]
+    name = next(name for name, known in codes.items() if known == code)
+    return codes[BUILTIN_PROGRAMS[name].without_effects or name]

@@ -244,7 +244,7 @@ class Accelerator:
         return scene
 
     def _make_record(self) -> NDArray[Any]:
-        record = np.zeros(1, SCENE)
+        record = np.zeros(1, SCENE.dtype)
         record["standing"], record["moving"] = self.scene, self.moving
         record["first_moving"] = self.first_moving
         return record

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from nau_py.raytrace.kernels.core import tables as t
+from nau_py.raytrace.kernels.core.kernel_tables import USER
 from nau_py.raytrace.kernels.path import camera as kernel
 from nau_py.raytrace.kernels.path.film import update_film
-from nau_py.raytrace.programs.batch import THIN_LENS
+from nau_py.raytrace.programs.catalogue import find_code_without_effects
+from nau_py.raytrace.programs.description import RAY_GENERATION
 from nau_py.raytrace.tracing.camera_rays import CameraRays
 from nau_py.raytrace.tracing.counts import RayCounts
 from nau_py.raytrace.tracing.estimate import PixelEstimates
@@ -104,26 +105,28 @@ class RayLaunch:
         """Compile the kernels of a launch, or load them; no program of the project is run."""
         if self.asks_python:
             ThreadTracer(self.scene).compile_kernels()
-        if self.generation.program.code != t.USER:
+        if self.generation.program.code != USER:
             none = np.zeros(0, kernel.ITEM)
             self.trace_tile(none, PixelEstimates.empty(0), slice(0, 0), 0)
 
     def _trace_samples(self, tracer: ThreadTracer, items: NDArray[Any], radiance: F32) -> F32:
         """Return the radiance of the samples of ``items``, RGBA float32 (samples, 4)."""
         program = self.generation.program
-        if program.code == t.USER:
+        if program.code == USER:
             samples = self._make_samples(tracer, items)
             return program.compute_radiance(samples, len(radiance))
         camera, width = self.generation.camera, self.generation.width
-        lens = int(program.code == THIN_LENS and self.scene.settings.simulated.lens)
+        code = program.code
+        if not self.scene.settings.simulated.lens:
+            code = find_code_without_effects(RAY_GENERATION, code)
         positions = self._choose_positions()
         side = max(round(self.settings.samples**0.5), 1)
         if not self.asks_python:
-            tracer.trace_camera_rays(camera, (lens, positions, side), width, items, radiance)
+            tracer.trace_camera_rays(camera, (code, positions, side), width, items, radiance)
             return radiance
         queue = tracer.memory.take_queue(len(radiance))[: len(radiance)]
         seed = np.uint32(self.scene.settings.seed & 0xFFFFFFFF)
-        kernel.generate_camera_rays(camera, lens, positions, side, seed, width, items, queue)
+        kernel.generate_camera_rays(camera, code, positions, side, seed, width, items, queue)
         tracer.trace_paths(queue, 0, radiance)
         tracer.memory.return_queue(queue)
         return radiance

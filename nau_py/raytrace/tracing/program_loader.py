@@ -15,8 +15,8 @@ from nau_py.diagnostics.errors import NauError, ProgramError
 from nau_py.diagnostics.location import Location
 from nau_py.diagnostics.suggest import format_names, suggest_name
 from nau_py.model.raytrace import BUILTIN, Program
-from nau_py.raytrace.kernels.core.tables import USER
-from nau_py.raytrace.programs.batch import CODES, FUNCTIONS
+from nau_py.raytrace.kernels.core.kernel_tables import USER
+from nau_py.raytrace.programs.catalogue import CODES, FUNCTIONS
 from nau_py.raytrace.programs.source import stand_in, strip_decoration
 from nau_py.raytrace.tracing.arrays import F32, Mask
 from nau_py.raytrace.tracing.program_modules import ProgramModules

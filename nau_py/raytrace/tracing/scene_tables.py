@@ -1,4 +1,4 @@
-"""What does not change between the tiles of a launch, and its tables for the kernels."""
+"""The scene of a launch, which all tiles share, and its tables for the kernels."""
 
 from __future__ import annotations
 
@@ -11,8 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.core import tables as t
-from nau_py.raytrace.kernels.core.codes import GLOSSY, NONE, ONE_SIDED, TRANSPARENCY
-from nau_py.raytrace.kernels.shading.bsdf import make_albedo_table
+from nau_py.raytrace.kernels.core.kernel_tables import NONE, PARTIAL, USER
+from nau_py.raytrace.kernels.core.layout import dtype_of
+from nau_py.raytrace.programs.catalogue import (
+    BUILTIN_PROGRAMS,
+    CODES,
+    find_zeroed_attributes,
+)
 from nau_py.raytrace.programs.description import ANY_HIT, CLOSEST_HIT, MISS
 from nau_py.raytrace.tracing.accelerator import Accelerator
 from nau_py.raytrace.tracing.arrays import F32
@@ -25,7 +30,6 @@ from nau_py.scene.mesh import F64
 
 ProgramTable = dict[tuple[str, str], list[BoundProgram | None]]
 """(ray type, kind) to a program for each material; a MISS has one entry."""
-ALBEDO_SAMPLES = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +51,7 @@ class Tables:
         self.record = record
         self.arrays: dict[str, NDArray[Any]] = {}
         for name, dtype in t.ARRAYS.items():
-            array = np.ascontiguousarray(arrays[name], np.dtype(dtype))
+            array = np.ascontiguousarray(arrays[name], dtype_of(dtype))
             self.arrays[name] = array
             record[name], record[f"{name}_count"] = array.ctypes.data, len(array)
 
@@ -89,7 +93,7 @@ class TexelStore:
         self._joined: tuple[NDArray[Any], NDArray[np.uint8]] | None = None
 
     def index(self, texture: RayTexture | None) -> int:
-        """The record of ``texture``; -1 for none."""
+        """Return the index of the record of ``texture``; -1 for none."""
         if texture is None:
             return -1
         if id(texture) not in self._index:
@@ -99,7 +103,7 @@ class TexelStore:
         return self._index[id(texture)]
 
     def arrays(self) -> tuple[NDArray[Any], NDArray[np.uint8]]:
-        """Records, and all texels."""
+        """Return the records, and all texels."""
         if self._joined is None:
             offsets = np.cumsum([0, *(len(x.rgba) for x in self._kept)])
             records = [x.make_record(int(o)) for x, o in zip(self._kept, offsets)]
@@ -110,21 +114,32 @@ class TexelStore:
         return self._joined
 
 
-@lru_cache(maxsize=1)
-def _albedo() -> F64:
-    return make_albedo_table(ALBEDO_SAMPLES)
+@lru_cache(maxsize=64)
+def _program_table(program: str, name: str) -> NDArray[np.float64]:
+    """Compute a table of a built-in program, once a process."""
+    return np.asarray(BUILTIN_PROGRAMS[program].tables[name](), np.float64)
+
+
+def _program_tables(codes: dict[str, NDArray[Any]]) -> dict[str, NDArray[np.float64]]:
+    """Return the tables of all built-in programs; one entry stands for the table of a program that
+    no material has."""
+    found = {}
+    for program in BUILTIN_PROGRAMS.values():
+        used = (
+            program.kind in codes and CODES[program.kind].get(program.name) in codes[program.kind]
+        )
+        for name in program.tables:
+            found[name] = _program_table(program.name, name) if used else np.ones(1)
+    return found
 
 
 def _material(material: TracedMaterial, store: TexelStore) -> NDArray[Any]:
-    made = np.zeros((), t.MATERIAL)
-    c = material.colour
-    made["diffuse"] = c("DIFFUSE")
-    for name in ("specular", "emission", "absorption"):
-        made[name] = c(name.upper())[:3]
-    bands = [c(f"FLUORESCENCE_{band}")[:3] for band in ("RED", "GREEN", "BLUE")]
-    made["reradiation"] = np.array(bands).T.reshape(-1)
-    made["shininess"], made["roughness"] = c("SHININESS")[0], c("ROUGHNESS")[0]
-    made["index"], made["priority"] = c("INDEX_OF_REFRACTION")[0], int(c("PRIORITY")[0])
+    """Return the record of a material: its attributes by the names of the fields."""
+    made = np.zeros((), t.MATERIAL.dtype)
+    for name in made.dtype.names or ():
+        if name != "texture":
+            values = material.colour(name.upper())
+            made[name] = values[: made[name].size] if made[name].ndim else values[0]
     made["texture"] = store.index(material.textures.get(0))
     return made
 
@@ -155,7 +170,8 @@ def _light(light: TracedLight, centre: F64, penumbra: bool) -> NDArray[Any]:
 def _emitters(
     geometry: RayGeometry, materials: NDArray[Any]
 ) -> tuple[NDArray[np.int32], F64, NDArray[np.float64]]:
-    """Triangles of materials with EMISSION, their cumulative power, density by triangle."""
+    """Return the triangles of materials with EMISSION, their cumulative power, and the density over
+    area by triangle."""
     strength = materials["emission"].astype(np.float64).sum(axis=1)
     strength = np.where(np.isfinite(strength) & (strength > 0), strength, 0.0)
     density = np.zeros(len(geometry.triangles))
@@ -179,46 +195,49 @@ def _attribute(values: F32 | None) -> F32:
 
 
 def make_tables(scene: TracedScene) -> Tables:
-    """Everything that the kernels read of ``scene``."""
+    """Make the tables of ``scene`` that kernels read."""
     geometry, types = scene.geometry, scene.ray_types
     count = max(len(scene.materials), 1)
     simulated = scene.settings.simulated
-    materials = np.zeros(count, t.MATERIAL)
+    materials = np.zeros(count, t.MATERIAL.dtype)
     for index, material in enumerate(scene.materials):
         materials[index] = _material(material, scene.texels)
     if not simulated.fluorescence:
-        materials["reradiation"] = 0
+        for name in find_zeroed_attributes("fluorescence"):
+            materials[name.lower()] = 0
     codes = {k: np.zeros((len(types), count), np.int8) for k in (CLOSEST_HIT, ANY_HIT)}
     for kind, table in codes.items():
         for row, name in enumerate(types):
             for column, program in enumerate(scene.programs.get((name, kind), [])):
                 table[row, column] = program.code if program else 0
     closest, any_hit = codes[CLOSEST_HIT], codes[ANY_HIT]
-    left_out = any_hit != ONE_SIDED  # that is a matter of geometry
+    geometric = [CODES[ANY_HIT][p.name] for p in BUILTIN_PROGRAMS.values() if p.geometric]
+    left_out = ~np.isin(any_hit, geometric)
     if simulated.transparency:
         plain = np.isin(np.arange(count), list(simulated.opaque))
-        left_out &= plain[None, :] & (any_hit != t.USER)
+        left_out &= plain[None, :] & (any_hit != USER)
     any_hit[left_out] = NONE
     miss = np.zeros(len(types), np.int8)
     for row, name in enumerate(types):
         program = scene.program(name, MISS, 0)
         miss[row] = program.code if program else 0
-    has_any = np.where(any_hit == t.USER, t.PYTHON, any_hit != NONE)
-    has_any = np.where(any_hit == TRANSPARENCY, t.PARTIAL, has_any).max(axis=1)
+    has_any = np.where(any_hit == USER, t.PYTHON, any_hit != NONE)
+    partial = (any_hit >= PARTIAL) & (any_hit != USER)
+    has_any = np.where(partial, t.PARTIAL, has_any).max(axis=1)
     visibility = ~(closest != 0).any(axis=1)
-    deferred = (has_any == t.PYTHON) | (miss == t.USER) | ~visibility
+    deferred = (has_any == t.PYTHON) | (miss == USER) | ~visibility
     shadow = next((k for k, name in enumerate(types) if name.lower() == "shadow"), -1)
-    if shadow < 0:  # rays of the radiance type ask what is in the way, by its built-in any hits
+    if shadow < 0:  # visibility is that of the radiance type, by its built-in any-hit programs
         deferred = np.zeros(len(types), bool)
     textures, texels = scene.texels.arrays()
     emitters, cdf, density = _emitters(geometry, materials)
     lights = np.zeros(len(scene.lights), t.LIGHT)
     for index, light in enumerate(scene.lights):
         lights[index] = _light(light, geometry.centre, simulated.penumbra)
-    made = np.zeros(1, t.SCENE)
+    made = np.zeros(1, t.SCENE.dtype)
     made["standing"], made["moving"] = scene.accelerator.scene, scene.accelerator.moving
     made["first_moving"], made["material_count"] = geometry.first_moving, count
-    made["asks_python"] = any((a == t.USER).any() for a in (closest, any_hit, miss))
+    made["asks_python"] = any((a == USER).any() for a in (closest, any_hit, miss))
     made["seed"] = scene.settings.seed & 0xFFFFFFFF
     made["max_depth"], made["shadow_type"] = scene.settings.max_depth, shadow
     made["light_samples"] = scene.settings.light_samples
@@ -242,7 +261,7 @@ def make_tables(scene: TracedScene) -> Tables:
             "emitters": emitters,
             "emitter_cdf": cdf,
             "emitter_pdf": density,
-            "albedo": _albedo() if (closest == GLOSSY).any() else np.ones(1),
+            **_program_tables(codes),
             "closest": closest,
             "any_hit": any_hit,
             "miss": miss,

@@ -83,12 +83,13 @@ class ThreadTracer:
     ) -> None:
         """Generate and trace the samples of ``items`` where no program is written in Python.
 
-        ``camera``: record of CAMERA; ``rule``: lens, sample positions, strata a side
-        (``kernels/path/camera.py``); ``width`` of the image in pixels. Adds to ``radiance``.
+        ``camera``: record of CAMERA; ``rule``: code of the ray generation program, sample
+        positions, strata a side (``kernels/path/camera.py``); ``width`` of the image in pixels.
+        Adds to ``radiance``.
         """
         record = self.scene.tables.record
         tile = self.memory.make_record(radiance, self.shift)
-        trace_samples(record, camera, *rule, width, items, tile)
+        trace_samples(record, 0, camera, *rule, width, items, tile)
 
     def trace_paths(
         self, queue: NDArray[Any], ray_type: int, radiance: F32, name: str = "primary"

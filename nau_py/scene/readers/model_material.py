@@ -14,9 +14,10 @@ OBJ_MATERIAL = "DefaultOBJMaterial"
 PRIMITIVE_MATERIAL = "__Light Grey"
 """Material of built-in primitives that name none."""
 
-DEFAULT_COLOURS: dict[str, tuple[float, ...]] = {
-    a.name: tuple(float(v) for v in a.default) for a in COLOR
-}
+
+def default_colours() -> dict[str, tuple[float, ...]]:
+    """Return the defaults of the COLOR attributes."""
+    return {a.name: tuple(float(v) for v in a.default) for a in COLOR}
 
 
 @dataclass(slots=True)

@@ -14,7 +14,10 @@ import numpy as np
 from llvmlite import ir
 from numba import cfunc, njit, types
 from numba.core import cgutils
-from numba.core.extending import intrinsic
+from numba.core.datamodel import models
+from numba.core.dispatcher import Dispatcher
+from numba.core.extending import intrinsic, register_model
+from numba.core.imputils import lower_constant
 from numba.core.registry import cpu_target
 
 from nau_py.raytrace.kernels.core.jit import COUNTS_CYCLES
@@ -51,15 +54,19 @@ def compile_kernel(function: Callable[..., Any]) -> Any:
         return njit(nogil=True, cache=cache, error_model="numpy", fastmath=False)(function)
 
 
-def compile_inner(function: Callable[..., Any]) -> Any:
-    """Return a dispatcher without the wrappers that Python needs."""
+def compile_inner(link: Callable[[], Callable[..., Any]], inline: bool) -> Any:
+    """Return a dispatcher of the function that ``link`` makes, without wrappers for Python.
+
+    ``inline``: LLVM inlines every call.
+    """
     return njit(
         nogil=True,
         error_model="numpy",
         fastmath=False,
         no_cpython_wrapper=True,
         no_cfunc_wrapper=True,
-    )(function)
+        forceinline=inline,
+    )(link())
 
 
 def compile_callback(function: Callable[..., None], signature: str) -> int:
@@ -71,12 +78,30 @@ def compile_callback(function: Callable[..., None], signature: str) -> int:
 
 
 def find_external(name: str, arguments: int) -> Any:
-    """Return the C function ``name`` of so many addresses."""
+    """Return the C function ``name``, which takes this number of addresses."""
     return types.ExternalFunction(name, types.void(*[types.uintp] * arguments))
+
+
+class KernelFunction(types.Dispatcher):  # type: ignore[misc, unused-ignore]
+    """Type of a compiled function that is passed to another one. Calls are resolved by the type.
+
+    Numba's own type carries the address of the dispatcher, and code with an address of this process
+    cannot be kept on disk.
+    """
+
+
+register_model(KernelFunction)(models.OpaqueModel)
+
+
+@lower_constant(KernelFunction)  # type: ignore[untyped-decorator, unused-ignore]
+def _lower_function(context: Any, builder: Any, type_: Any, value: Any) -> Any:
+    return context.get_dummy_value()
 
 
 def type_of(compiled: Any) -> Any:
     """Return numba's type of a dispatcher, an intrinsic or an external function."""
+    if isinstance(compiled, Dispatcher):
+        return KernelFunction(compiled)
     context = cpu_target.typing_context
     context.refresh()  # intrinsics that were made during this compilation
     return context.resolve_value_type(compiled)

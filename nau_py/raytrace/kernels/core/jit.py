@@ -10,9 +10,13 @@ from __future__ import annotations
 import functools
 import importlib
 import platform
+import sys
 import threading
 from collections.abc import Callable
+from types import ModuleType
 from typing import Any, TypeVar, cast
+
+from nau_py.process.numba_import import import_numba
 
 F = TypeVar("F", bound=Callable[..., object])
 V3 = tuple[float, float, float]
@@ -21,9 +25,16 @@ _COMPILER = "nau_py.raytrace.kernels.core.compiler"
 _LOCK = threading.RLock()
 
 
+def _load_compiler() -> ModuleType:
+    """Import the module that uses numba, without a configuration from the working folder."""
+    if _COMPILER not in sys.modules:
+        import_numba()
+    return importlib.import_module(_COMPILER)
+
+
 class Deferred:
-    """A function that is compiled at its first use. Subclasses tell the compiler's function that
-    makes it, and its arguments."""
+    """A function that is compiled at its first use. ``maker``: the function of the compiler that
+    makes it; ``arguments``: its arguments."""
 
     def __init__(self, maker: str, *arguments: Any) -> None:
         self._maker, self._arguments = maker, arguments
@@ -35,14 +46,13 @@ class Deferred:
         if self._compiled is None:
             with _LOCK:  # two threads must not make two dispatchers
                 if self._compiled is None:
-                    make = getattr(importlib.import_module(_COMPILER), self._maker)
+                    make = getattr(_load_compiler(), self._maker)
                     self._compiled = make(*self._arguments)
         return self._compiled
 
     @property
     def _numba_type_(self) -> Any:
-        compiler = importlib.import_module(_COMPILER)
-        return compiler.type_of(self.compiled)
+        return _load_compiler().type_of(self.compiled)
 
     def __call__(self, *arguments: Any) -> Any:
         raise TypeError(f"{self._maker}{self._arguments} works in compiled code only")
@@ -51,8 +61,11 @@ class Deferred:
 class Inner(Deferred):
     """A function that kernels call. Called from Python, it is the plain function."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        super().__init__("compile_inner", function)
+    def __init__(
+        self, function: Callable[..., Any], link: Callable[[], Callable[..., Any]] | None = None
+    ) -> None:
+        """``link``: makes the function to compile, if that is another one; it is always inlined."""
+        super().__init__("compile_inner", link or (lambda: function), link is not None)
         self.py_func = function
         functools.update_wrapper(self, function)
 
@@ -84,16 +97,16 @@ def inner(function: F) -> F:
 
 def callback(function: Callable[..., None], signature: str = "void(uint64)") -> int:
     """Compile ``function``, which a C library calls; return the address of its code."""
-    return int(importlib.import_module(_COMPILER).compile_callback(function, signature))
+    return int(_load_compiler().compile_callback(function, signature))
 
 
 def external(name: str, arguments: int) -> Callable[..., Any]:
-    """A C function of so many addresses without a result, found by its symbol."""
+    """Declare the C function ``name``, which takes this number of addresses and returns nothing."""
     return cast(Callable[..., Any], Deferred("find_external", name, arguments))
 
 
 COUNTS_CYCLES = platform.machine().lower() in ("x86_64", "amd64")
-"""Whether the processor's counter can be read here: elsewhere the instruction may be forbidden."""
+"""True if the processor's counter can be read: elsewhere the instruction may be forbidden."""
 read_cycles = cast(Callable[[], int], Deferred("make_cycle_counter"))
 """The processor's cycle counter, int64; 0 where it cannot be read."""
 

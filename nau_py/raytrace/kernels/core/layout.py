@@ -20,7 +20,7 @@ class RecordLayout:
 
     @property
     def dtype(self) -> np.dtype[Any]:
-        """The aligned dtype of numpy. No field can be added after its first use."""
+        """Aligned dtype of numpy. No field can be added after its first use."""
         if self._dtype is None:
             self._dtype = np.dtype(list(self._fields.values()), align=True)
         return self._dtype
@@ -44,6 +44,6 @@ Record = RecordLayout | np.dtype[Any]
 """A layout, or a dtype that nothing adds to."""
 
 
-def dtype_of(record: Record) -> np.dtype[Any]:
-    """Return the dtype of a record; a layout is fixed by that."""
-    return record.dtype if isinstance(record, RecordLayout) else record
+def dtype_of(record: Record | str) -> np.dtype[Any]:
+    """Return the dtype of a record, or of a name of numpy; a layout is fixed by that."""
+    return record.dtype if isinstance(record, RecordLayout) else np.dtype(record)

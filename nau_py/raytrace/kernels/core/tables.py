@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from nau_py.raytrace.kernels.core.layout import RecordLayout
 from nau_py.raytrace.kernels.core.memory import (
     field_reader,
     field_writer,
@@ -14,28 +15,21 @@ from nau_py.raytrace.kernels.core.memory import (
 MEDIA = 4
 """Dielectrics that a path can be inside of at once."""
 
-MATERIAL = np.dtype(
+MATERIAL = RecordLayout(
     [
         ("diffuse", "f4", 4),
         ("specular", "f4", 3),
         ("emission", "f4", 3),
-        ("absorption", "f4", 3),
-        ("reradiation", "f4", 9),
         ("shininess", "f4"),
-        ("roughness", "f4"),
-        ("index", "f4"),
-        ("priority", "i4"),
         ("texture", "i4"),
-    ],
-    align=True,
+    ]
 )
-"""``reradiation``: row-major, [emitted band, absorbed band]. ``texture``: of unit 0, or -1."""
+"""Nau's attributes that several programs read; programs add a field for each of their own
+attributes. ``texture``: of unit 0, or -1."""
 material_at = record_reader(MATERIAL)
 diffuse_of = field_reader(MATERIAL, "diffuse")
 specular_of = field_reader(MATERIAL, "specular")
 emission_of = field_reader(MATERIAL, "emission")
-absorption_of = field_reader(MATERIAL, "absorption")
-reradiation_of = field_reader(MATERIAL, "reradiation")
 
 TEXTURE = np.dtype(
     [
@@ -82,7 +76,7 @@ edge_v_of = field_reader(LIGHT, "edge_v")
 SHAPES = ("DIRECTIONAL", "POINT", "SPOT", "RECTANGLE", "DISC", "SPHERE")
 DIRECTIONAL, POINT, SPOT, RECTANGLE, DISC, SPHERE = range(6)
 
-ARRAYS: dict[str, str | np.dtype[np.void]] = {
+ARRAYS: dict[str, str | RecordLayout | np.dtype[np.void]] = {
     "vertices": "f4",
     "triangles": "i4",
     "owner": "i4",
@@ -96,7 +90,6 @@ ARRAYS: dict[str, str | np.dtype[np.void]] = {
     "emitters": "i4",
     "emitter_cdf": "f8",
     "emitter_pdf": "f8",
-    "albedo": "f8",
     "closest": "i1",
     "any_hit": "i1",
     "miss": "i1",
@@ -108,14 +101,14 @@ ARRAYS: dict[str, str | np.dtype[np.void]] = {
 RayGeometry; ``smooth``: triangles whose normals differ; ``emitter_pdf``: density over area by
 triangle; ``closest`` and ``any_hit``: codes of programs by ray type and material; the rest by ray
 type: ``miss`` codes; ``has_any_hit``: NOTHING, DECIDED, PARTIAL or PYTHON; ``visibility`` where
-there is no closest-hit program; ``deferred_shadows`` where Python must answer what is in the
-way."""
+there is no closest-hit program; ``deferred_shadows`` where a Python program decides on the
+visibility."""
 
 NOTHING, DECIDED, PARTIAL, PYTHON = range(4)
-"""What any-hit programs a ray type has: none; only such as stop a ray or let it pass, which Embree
-asks while it traces; some that let a part of the light pass; some of Python's."""
+"""Any-hit programs of a ray type: none; only such as stop a ray or let it pass, which Embree runs
+while it traces; some that let a part of the light pass; some written in Python."""
 
-SCENE = np.dtype(
+SCENE = RecordLayout(
     [
         *((name, "u8") for name in ARRAYS),
         *((f"{name}_count", "i8") for name in ARRAYS),
@@ -133,16 +126,23 @@ SCENE = np.dtype(
         ("negligible", "f8"),
         ("occlusion_distance", "f8"),
         ("background", "f4", 4),
-    ],
-    align=True,
+    ]
 )
 """Addresses and lengths of the arrays, Embree's scenes (0 for none; triangle ``first_moving``
-begins the second), and the settings of the pass. ``shadow_type``: index of the ray type that asks
-for shadows, -1 for none. ``asks_python``: whether any program is Python's. ``skipped``: a bit a
-kind of ray that is not sent. ``caustics``: whether lamps count that are met by way of a mirror or
-glass after a diffuse surface. ``negligible``: weight below which specular chains end.
+begins the second), and the settings of the pass. ``shadow_type``: index of the ray type of
+shadow rays, -1 for none. ``asks_python``: 1 if any program is written in Python. ``skipped``: a bit
+for each kind of ray that is not sent. ``caustics``: 1 if lamps count that are met by way of a
+mirror or glass after a diffuse surface. ``negligible``: weight below which specular chains end.
 Positions are world space less the centre."""
 background_of = field_reader(SCENE, "background")
+
+
+def add_array(name: str, dtype: str) -> None:
+    """Add an array to the scene: kernels read its address as ``scene.name``."""
+    ARRAYS[name] = dtype
+    SCENE.add((name, "u8"))
+    SCENE.add((f"{name}_count", "i8"))
+
 
 PATH = np.dtype(
     [
@@ -170,14 +170,15 @@ PATH = np.dtype(
     ],
     align=True,
 )
-"""A ray under way, and what becomes of its hit.
+"""A ray under way, and the state of its hit.
 
-``weight`` (RGB and alpha) multiplies what the ray brings to result ``index``. ``pdf``: density over
-solid angle with which the direction was chosen, 0 where it is not shared with light sampling.
-``initial``: what a miss without a program brings. ``travelled``: distance before the present
+``weight`` (RGB and alpha) multiplies the radiance of the ray, for result ``index``. ``pdf``:
+density over solid angle with which the direction was chosen, 0 where light sampling does
+not share it.
+``initial``: the radiance of a miss without a program. ``travelled``: distance before the present
 origin, past ignored hits. ``media``: indices of the materials that the origin is inside of, -1 for
 none. ``band``: the colour band that is followed after a fluorescent surface, -1 for all.
-``scattered``: whether it has left a diffuse surface.
+``scattered``: 1 if it has left a diffuse surface.
 """
 path_at, copy_path = record_reader(PATH), record_copier(PATH)
 origin_of, set_origin = field_reader(PATH, "origin"), field_writer(PATH, "origin")
@@ -209,11 +210,11 @@ TILE = np.dtype(
     ],
     align=True,
 )
-"""What one thread works with: addresses of Embree's single ray, of its packet, of the packet's
-int32 mask of valid lanes and of the QUERY; of the paths in the lanes (int64) and what they see
-(float32); of the counters, the results (4 float32 a row), the LANES paths of a packet, those that
-wait their turn (``top`` of them), shadow rays (``pending`` of them), and paths that Python must
-answer (``waiting`` of ``capacity``, and one slot for what is too much); ``viewed``: int32 a
+"""The memory of one thread: addresses of Embree's single ray, of its packet, of the packet's
+int32 mask of valid lanes and of the QUERY; of the paths in the lanes (int64) and the visibility
+that they find (float32); of the counters, the results (4 float32 a row), the LANES paths of a
+packet, those that wait (``top`` of them), shadow rays (``pending`` of them), and paths that Python
+must answer (``waiting`` of ``capacity``, and one slot for what is too much); ``viewed``: int32 a
 material, 1 where a primary ray met it; ``next``: the path of the queue to follow. Samples of the
 same pixel >> ``shift`` are traced together."""
 
@@ -276,8 +277,8 @@ ray type, the scene's ``first`` triangle in Embree's scene, whose rays are in th
 the last hit was that each ignored."""
 
 TRACE, SHADE, HIT, CANDIDATE, MISSED, OCCLUSION = range(6)
-"""Status: to be traced; accepted hit to be shaded; and what a Python program must answer: a closest
-hit, an any hit, a miss, the visibility of a light (``weight`` is then its contribution)."""
+"""Status: to be traced; accepted hit to be shaded; and the events that Python programs handle: a
+closest hit, an any hit, a miss, the visibility of a light (``weight`` is then its contribution)."""
 
 KINDS = (
     "primary",
@@ -293,7 +294,5 @@ NONFINITE, CUT, IN_EMBREE, SKIPPED, COUNTERS = 8, 9, 10, 11, 19
 """Slots of the counters (int64): rays by kind, rays not finite, rays cut by the layer limit, cycles
 that rays took, and from SKIPPED on by kind rays that were not sent."""
 
-USER = 127
-"""The code of a program that is no kernel: Python answers for it."""
 STACK = 256
 """Paths that wait while other parts of the same samples are followed."""

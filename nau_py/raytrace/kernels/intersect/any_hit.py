@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.raytrace.kernels.core.codes import NONE, TRANSPARENCY
 from nau_py.raytrace.kernels.core.jit import callback
+from nau_py.raytrace.kernels.core.kernel_tables import NONE, PARTIAL
 from nau_py.raytrace.kernels.core.memory import (
     f32,
     i8,
@@ -24,7 +24,7 @@ from nau_py.raytrace.kernels.core.memory import (
     put_i64,
     record_reader,
 )
-from nau_py.raytrace.kernels.core.tables import CONTINUATION, QUERY, SCENE, USER
+from nau_py.raytrace.kernels.core.tables import CONTINUATION, QUERY, SCENE
 from nau_py.raytrace.kernels.intersect.embree import (
     CONTEXT,
     DEPTH,
@@ -64,7 +64,7 @@ def _filter_candidates(arguments: Any) -> None:
             last = triangle
             at = query.ray_type * scene.material_count + i32(scene.owner, triangle)
             code = i8(scene.any_hit, at)
-        if code == NONE or code == TRANSPARENCY or code == USER:
+        if code == NONE or code >= PARTIAL:
             continue
         u, v = f32(candidate, 3 * n + lane), f32(candidate, 4 * n + lane)
         k = DIRECTION * n + lane

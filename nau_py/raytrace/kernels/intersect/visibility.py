@@ -6,20 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from nau_py.raytrace.kernels.core.codes import ALPHA_TEST, NONE, ONE_SIDED, STOCHASTIC_ALPHA
 from nau_py.raytrace.kernels.core.jit import V3, inner
+from nau_py.raytrace.kernels.core.kernel_tables import ANY_HIT_KERNELS, NONE, USER
 from nau_py.raytrace.kernels.core.memory import i8, i32
-from nau_py.raytrace.kernels.core.sampling import sample_1d
 from nau_py.raytrace.kernels.core.tables import (
     CONTINUATION,
     CUT,
     DECIDED,
-    USER,
-    diffuse_of,
     material_at,
 )
-from nau_py.raytrace.kernels.core.vec import dot
-from nau_py.raytrace.kernels.geometry.surface import evaluate_alpha, locate_point, offset_origin
+from nau_py.raytrace.kernels.geometry.surface import locate_point, offset_origin
 from nau_py.raytrace.kernels.intersect.counters import (
     increment_counter,
 )
@@ -31,7 +27,7 @@ from nau_py.raytrace.kernels.intersect.embree import (
     read_hit,
 )
 
-ALPHA_THRESHOLD = 0.25
+_run_program = ANY_HIT_KERNELS.run
 MAX_LAYERS = 256
 """Most partly transparent hits that one ray passes; reaching the limit is reported."""
 FAINT = 1e-6
@@ -50,26 +46,14 @@ def evaluate_opacity(
     sample: np.uint32,
     depth: int,
 ) -> float:
-    """Return the part of a ray that the built-in any-hit program of a hit stops, 0 to 1.
-
-    Random numbers are keyed by the triangle, so that the result does not depend on the order in
-    which Embree finds the hits.
-    """
+    """Return the part of a ray that the built-in any-hit program of a hit stops, 0 to 1."""
     owner = i32(scene.owner, triangle)
     code = i8(scene.any_hit, ray_type * scene.material_count + owner)
     if code == NONE or code == USER:
         return 1.0
-    if code == ONE_SIDED:
-        return 1.0 if dot(locate_point(scene, triangle, u, v)[1], direction) < 0.0 else 0.0
     material = material_at(scene.materials, owner)
-    alpha = evaluate_alpha(scene, material, triangle, u, v)
-    if code == ALPHA_TEST:
-        return 1.0 if alpha > ALPHA_THRESHOLD else 0.0
-    alpha = min(max(alpha * diffuse_of(material)[3], 0.0), 1.0)
-    if code == STOCHASTIC_ALPHA:
-        key = np.uint32(0x40000000 + triangle * 32 + min(depth, 31))
-        return 1.0 if sample_1d(scene.seed, pixel, sample, key) < alpha else 0.0
-    return alpha
+    stopped = _run_program(code, scene, material, triangle, u, v, direction, pixel, sample, depth)
+    return float(stopped)
 
 
 @inner

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.core.jit import V3, inner, kernel
+from nau_py.raytrace.kernels.core.kernel_tables import RAY_GENERATION_KERNELS
 from nau_py.raytrace.kernels.core.memory import field_reader
-from nau_py.raytrace.kernels.core.sampling import sample_1d, sample_2d, sample_disk
+from nau_py.raytrace.kernels.core.sampling import sample_1d, sample_2d
 from nau_py.raytrace.kernels.core.tables import (
     PRIMARY,
     TRACE,
@@ -43,6 +44,7 @@ _position, _forward = field_reader(CAMERA, "position"), field_reader(CAMERA, "fo
 _right, _up = field_reader(CAMERA, "right"), field_reader(CAMERA, "up")
 _base, _step = field_reader(CAMERA, "base"), field_reader(CAMERA, "step")
 
+_generate_ray = RAY_GENERATION_KERNELS.run
 CENTRE, JITTER, STRATA, SOBOL = range(4)
 """Sample positions in a pixel: its centre, random, stratified, a Sobol sequence."""
 ITEM = np.dtype([("pixel", "i8"), ("first", "i4"), ("count", "i4")], align=True)
@@ -109,7 +111,7 @@ def reset_path(path: Any) -> None:
 @inner
 def start_camera_path(
     camera: Any,
-    lens: int,
+    code: int,
     rule: int,
     side: int,
     seed: np.uint32,
@@ -121,7 +123,7 @@ def start_camera_path(
 ) -> None:
     """Start ``path`` as sample ``number`` of pixel ``flat``, whose radiance goes to row ``at``.
 
-    ``lens``: 1 for the thin lens, 0 for a pinhole; ``rule``: CENTRE, JITTER, STRATA or SOBOL;
+    ``code``: of the ray generation program; ``rule``: CENTRE, JITTER, STRATA or SOBOL;
     ``side``: strata along a side of the pixel.
     """
     pixel, sample = np.uint32(flat), np.uint32(number)
@@ -135,12 +137,9 @@ def start_camera_path(
         if rule == STRATA:
             dx = min((number % side + dx) / side, 0.99999994)
             dy = min((number // side % side + dy) / side, 0.99999994)
-    lx, ly = 0.0, 0.0
-    if lens:
-        a, b = sample_2d(seed, pixel, sample, np.uint32(2))
-        lx, ly = sample_disk(a, b)
     row = int(flat / width)  # exact below 2^53, and faster than integer division
-    o, d = compute_camera_ray(camera, flat - row * width + dx, row + dy, lx, ly)
+    x, y = flat - row * width + dx, row + dy
+    o, d = _generate_ray(code, camera, seed, pixel, sample, x, y)
     set_origin(path, o)
     set_heading(path, d)
     path.index = at
@@ -151,7 +150,7 @@ def start_camera_path(
 @kernel
 def generate_camera_rays(
     cameras: Any,
-    lens: int,
+    code: int,
     rule: int,
     side: int,
     seed: np.uint32,
@@ -165,6 +164,6 @@ def generate_camera_rays(
         flat, first = int(items[i].pixel), int(items[i].first)
         for k in range(items[i].count):
             start_camera_path(
-                cameras[0], lens, rule, side, seed, width, flat, first + k, at, queue[at]
+                cameras[0], code, rule, side, seed, width, flat, first + k, at, queue[at]
             )
             at += 1

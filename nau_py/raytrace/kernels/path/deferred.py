@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from nau_py.raytrace.kernels.core.jit import kernel
 from nau_py.raytrace.kernels.core.tables import CANDIDATE, heading_of, origin_of, weight_of
-from nau_py.raytrace.kernels.shading.sample_bsdf import pass_hit
+from nau_py.raytrace.kernels.shading.scatter import pass_hit
 
 F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]

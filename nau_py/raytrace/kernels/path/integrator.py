@@ -135,15 +135,19 @@ def trace_rays(
 @kernel
 def trace_samples(
     scenes: NDArray[Any],
+    ray_type: int,
     cameras: NDArray[Any],
-    lens: int,
+    code: int,
     rule: int,
     side: int,
     width: int,
     items: NDArray[Any],
     tiles: NDArray[Any],
 ) -> None:
-    """Generate and follow the camera rays of ``items`` without a queue; no program is Python's."""
+    """Generate and follow the camera rays of ``items`` without a queue; no program is Python's.
+
+    ``ray_type`` is an argument, as a constant 0 would compile every function once more.
+    """
     scene, tile = scenes[0], tiles[0]
     at, size, i, taken = 0, 0, 0, 0
     count = items.shape[0]
@@ -153,7 +157,7 @@ def trace_samples(
             path = path_at(tile.work, size)
             number = int(items[i].first) + taken
             start_camera_path(
-                cameras[0], lens, rule, side, scene.seed, width, flat, number, at, path
+                cameras[0], code, rule, side, scene.seed, width, flat, number, at, path
             )
             at += 1
             size += 1
@@ -163,5 +167,5 @@ def trace_samples(
             taken = 0
         last_of_group = i == count or int(items[i].pixel) >> tile.shift != flat >> tile.shift
         if size == LANES or last_of_group:
-            trace_packet(scene, tile, 0, size)
+            trace_packet(scene, tile, ray_type, size)
             size = 0

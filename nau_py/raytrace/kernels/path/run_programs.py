@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from nau_py.raytrace.kernels.core.codes import BACKGROUND, NONE, TRANSPARENCY, UNOCCLUDED
 from nau_py.raytrace.kernels.core.jit import inner
+from nau_py.raytrace.kernels.core.kernel_tables import MISS_KERNELS, NONE, PARTIAL, USER
 from nau_py.raytrace.kernels.core.memory import i8, i32, put_i32
 from nau_py.raytrace.kernels.core.tables import (
     CANDIDATE,
@@ -16,8 +16,6 @@ from nau_py.raytrace.kernels.core.tables import (
     SHADE,
     STACK,
     TRACE,
-    USER,
-    background_of,
     copy_path,
     heading_of,
     media_of,
@@ -28,8 +26,11 @@ from nau_py.raytrace.kernels.core.tables import (
 from nau_py.raytrace.kernels.intersect.counters import increment_counter
 from nau_py.raytrace.kernels.intersect.visibility import MAX_LAYERS, evaluate_opacity
 from nau_py.raytrace.kernels.shading.closest_hit import evaluate_material
-from nau_py.raytrace.kernels.shading.direct import add_radiance, defer_path, take_rgb
-from nau_py.raytrace.kernels.shading.sample_bsdf import apply_absorption, pass_hit
+from nau_py.raytrace.kernels.shading.media import apply_absorption
+from nau_py.raytrace.kernels.shading.radiance import add_radiance, defer_path
+from nau_py.raytrace.kernels.shading.scatter import pass_hit
+
+_run_miss_program = MISS_KERNELS.run
 
 
 @inner
@@ -38,11 +39,8 @@ def handle_escaped_ray(scene: Any, tile: Any, ray_type: int, path: Any) -> None:
     code = i8(scene.miss, ray_type)
     if code == USER:
         defer_path(tile, path, MISSED)
-    elif code == BACKGROUND:
-        b = background_of(scene)
-        add_radiance(tile, path, take_rgb(b), b[3])
-    elif code == UNOCCLUDED:
-        add_radiance(tile, path, (1.0, 1.0, 1.0), 1.0)
+    elif code != NONE:
+        _run_miss_program(code, scene, tile, path)
     elif path.initial != 0.0:
         initial = float(path.initial)
         add_radiance(tile, path, (initial, initial, initial), initial)
@@ -69,7 +67,7 @@ def run_any_hit(scene: Any, tile: Any, ray_type: int, path: Any) -> bool:
     """
     at = ray_type * scene.material_count + i32(scene.owner, path.triangle)
     code = i8(scene.any_hit, at)
-    if code != USER and code != TRANSPARENCY:
+    if code < PARTIAL:
         return True
     if path.layers >= MAX_LAYERS:
         increment_counter(tile, CUT)

@@ -1,19 +1,20 @@
-"""Lights: the pass's own, and emissive triangles.
+"""Lights of the pass.
 
-A LIGHT's COLOR is what a white diffuse surface facing it shows, as in rasterisation. One with a
-shape is the mean of point lights over its area, so that it tends to the point light as it shrinks.
+A LIGHT's COLOR is the colour of a white diffuse surface that faces it, as in rasterisation. A light
+with a shape is the mean of point lights over its area, so that it tends to the point light as it
+shrinks.
 """
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from collections.abc import Callable
+from math import sqrt
 from typing import Any
 
 import numpy as np
 
 from nau_py.raytrace.kernels.core.jit import V3, inner
-from nau_py.raytrace.kernels.core.memory import f64, i32
-from nau_py.raytrace.kernels.core.sampling import sample_disk, sample_sphere
+from nau_py.raytrace.kernels.core.sampling import sample_2d, sample_disk, sample_sphere
 from nau_py.raytrace.kernels.core.tables import (
     DIRECTIONAL,
     DISC,
@@ -24,19 +25,23 @@ from nau_py.raytrace.kernels.core.tables import (
     direction_of,
     edge_u_of,
     edge_v_of,
+    light_at,
     position_of,
     spot_of,
 )
-from nau_py.raytrace.kernels.core.vec import add, cross, dot, normalize, scale, subtract
-from nau_py.raytrace.kernels.geometry.surface import load_corner
+from nau_py.raytrace.kernels.core.vec import add, dot, multiply, scale, subtract
+from nau_py.raytrace.kernels.intersect.embree import INFINITE
+from nau_py.raytrace.kernels.shading.radiance import add_light
 
 TINY = 1e-12
 """Squared distance, relative to coordinates, below which a light is on the surface itself."""
+LIGHT_DIMENSION = 0x1000
+"""First dimension of light samples: 64 lights a depth."""
 
 
 @inner
 def sample_light_point(light: Any, x: float, y: float) -> V3:
-    """A uniform point of the light's shape."""
+    """Sample a uniform point of the light's shape."""
     p = position_of(light)
     if light.shape == RECTANGLE:
         u, v = scale(edge_u_of(light), x - 0.5), scale(edge_v_of(light), y - 0.5)
@@ -51,7 +56,8 @@ def sample_light_point(light: Any, x: float, y: float) -> V3:
 
 @inner
 def sample_light(light: Any, position: V3, x: float, y: float) -> tuple[V3, float, V3]:
-    """Vector to a point of the light, its length or infinity, and the colour that arrives.
+    """Sample a point of the light. Return the vector to it, its length or infinity, and the colour
+    that arrives.
 
     Attenuation and spot cone are Nau's: 1 / (c + l d + q d²), cos^exponent inside the cutoff. On
     the light itself nothing arrives.
@@ -74,35 +80,48 @@ def sample_light(light: Any, position: V3, x: float, y: float) -> tuple[V3, floa
 
 
 @inner
-def sample_emitter(scene: Any, choice: float, x: float, y: float) -> tuple[int, V3, V3, float]:
-    """Triangle, point, unit normal and density over area of a point of the emissive triangles."""
-    low, high = 0, scene.emitters_count - 1
-    while low < high:  # the last entry whose cumulative power does not exceed the choice
-        middle = (low + high + 1) // 2
-        if f64(scene.emitter_cdf, middle) <= choice:
-            low = middle
-        else:
-            high = middle - 1
-    triangle = i32(scene.emitters, low)
-    root = sqrt(x)
-    u, v = root * (1.0 - y), root * y
-    a, b, c = (
-        load_corner(scene, triangle, 0),
-        load_corner(scene, triangle, 1),
-        load_corner(scene, triangle, 2),
-    )
-    p = add(a, add(scale(subtract(b, a), u), scale(subtract(c, a), v)))
-    n = normalize(cross(subtract(b, a), subtract(c, a)))
-    return triangle, p, n, f64(scene.emitter_pdf, triangle)
+def count_light_samples(scene: Any, light: Any) -> int:
+    """Return the number of shadow rays for a light: more than one only for a light with area."""
+    return max(int(scene.light_samples), 1) if light.shape >= RECTANGLE else 1
 
 
 @inner
-def weigh_strategies(a: float, b: float) -> float:
-    """The power heuristic for two strategies (Veach 1997, 9.2.4)."""
-    if not a > 0.0:
-        return 0.0
-    r = b / a
-    return 1.0 / (1.0 + r * r)
+def reflect_diffuse(albedo: V3, direction: V3, length: float) -> V3:
+    """Return π times the BRDF of a diffuse surface, which does not depend on the direction."""
+    return albedo
 
 
-INVERSE_PI = 1.0 / pi
+@inner
+def sample_lights(
+    scene: Any,
+    tile: Any,
+    ray_type: int,
+    path: Any,
+    origin: V3,
+    normal: V3,
+    reflect: Callable[[Any, V3, float], V3],
+    lobe: Any,
+) -> None:
+    """Add the light of every light of the pass, with shadows.
+
+    ``reflect(lobe, direction, length)`` returns π times the BRDF for light from ``direction``, a
+    vector of that length.
+    """
+    for index in range(scene.lights_count):
+        light = light_at(scene.lights, index)
+        samples = count_light_samples(scene, light)
+        dimension = np.uint32(LIGHT_DIMENSION + path.depth * 64 + index)
+        for k in range(samples):
+            number = np.uint32(path.sample * samples + k)
+            x, y = sample_2d(scene.seed, path.pixel, number, dimension)
+            to, distance, colour = sample_light(light, origin, x, y)
+            length = distance if distance < INFINITE else 1.0
+            if not length > 0.0:
+                continue
+            cosine = dot(normal, to) / length
+            if not cosine > 0.0:
+                continue
+            tmax = 1.0 if distance < INFINITE else INFINITE
+            reflected = reflect(lobe, to, length)
+            brought = scale(multiply(reflected, colour), cosine / samples)
+            add_light(scene, tile, ray_type, path, index, origin, to, tmax, brought)

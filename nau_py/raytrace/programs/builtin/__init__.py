@@ -1,0 +1,1 @@
+"""The built-in ray programs, one file each: ``PROGRAM`` describes it."""
