@@ -6,7 +6,7 @@ greatest, ``not`` 1 minus the greatest.
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from pydantic import Field
 
@@ -119,19 +119,19 @@ SELECTORS: dict[str, type[Node]] = {
 class AndSelector(Node):
     """The least of its parts."""
 
-    parts: Annotated[list[Any], Variants(SELECTORS)] = Field(default_factory=list)
+    parts: Annotated[list[Node], Variants(SELECTORS)] = Field(default_factory=list)
 
 
 class OrSelector(Node):
     """The greatest of its parts."""
 
-    parts: Annotated[list[Any], Variants(SELECTORS)] = Field(default_factory=list)
+    parts: Annotated[list[Node], Variants(SELECTORS)] = Field(default_factory=list)
 
 
 class NotSelector(Node):
     """1 minus the greatest of its parts."""
 
-    parts: Annotated[list[Any], Variants(SELECTORS)] = Field(default_factory=list)
+    parts: Annotated[list[Node], Variants(SELECTORS)] = Field(default_factory=list)
 
 
 SELECTORS |= {"and": AndSelector, "or": OrSelector, "not": NotSelector}
@@ -141,7 +141,7 @@ class MaskPass(Pass):
     """Writes world position into the first three components of its target, weight into the last.
     Several selectors are joined by `or`; without a selector every pixel is selected."""
 
-    select: Annotated[list[Any], Variants(SELECTORS, "select")] = Field(default_factory=list)
+    select: Annotated[list[Node], Variants(SELECTORS, "select")] = Field(default_factory=list)
 
     def all_selectors(self) -> list[Node]:
         """Return every selector, also those inside others, in file order."""

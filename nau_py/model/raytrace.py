@@ -39,7 +39,10 @@ VERTEX_ATTRIBUTES = [
 
 
 def component(name: str | None, channels: int) -> int:
-    """The channel that ``x`` to ``w`` names, of so many; the last one for none or one too far."""
+    """Return the index of the channel that ``x`` to ``w`` names; the last one for none.
+
+    ``channels``: number of channels.
+    """
     return min("xyzw".index(name) if name in tuple("xyzw") else 3, channels - 1)
 
 
@@ -82,7 +85,7 @@ class RayMaterial(Node):
     )
 
     def program(self, ray_type: str, kind: str) -> RayProgram | None:
-        """The program of a kind for a ray type."""
+        """Return the program of a kind for a ray type, or None."""
         for group in self.rayTypes:
             if group.name == ray_type:
                 return next((p for p in group.programs if p.type == kind), None)
@@ -150,7 +153,7 @@ class OutputBuffer(Node):
 
 
 class RaytracePass(Pass):
-    """Traces rays and writes what they bring to its render target."""
+    """Traces rays and writes their radiance to its render target."""
 
     rtRayTypes: Annotated[list[RayType], Items(RayType, "rayType", "rtRayTypes")] = Field(
         default_factory=list
@@ -181,14 +184,14 @@ class RaytracePass(Pass):
 
     @property
     def mask(self) -> InputBuffer | None:
-        """The input that selects pixels: the one with ``mask``, or the variable ``mask``."""
+        """Input that selects pixels: the one with ``mask``, or the variable ``mask``."""
         flagged = [i for i in self.rtInput if i.mask]
         named = [i for i in self.rtInput if i.var == "mask"]
         return next(iter(flagged + named), None)
 
     def entry(self, names: Iterable[str]) -> RayMaterial | None:
-        """The programs of a material that goes by ``names``: its exact entry, the first prefix in
-        byte order, else the default's (7.1)."""
+        """Return the programs of a material that has one of ``names``: its exact entry, the first
+        prefix in byte order, else the default (7.1)."""
         known = set(names)
         for node in self.rtMaterialMap:
             if node.to in known:
@@ -201,7 +204,7 @@ class RaytracePass(Pass):
 
     @property
     def materials(self) -> list[RayMaterial]:
-        """The default entry first, then the mapped ones."""
+        """Entries of materials: the default one, then the mapped ones."""
         default = [self.rtDefaultMaterial] if self.rtDefaultMaterial else []
         return default + self.rtMaterialMap
 

@@ -1,4 +1,4 @@
-"""Where the source of a program is, without running it."""
+"""Find the source of a program without running it."""
 
 from __future__ import annotations
 
@@ -17,14 +17,16 @@ _MANGLED = re.compile(r"_Z(\d+)(\w+)")
 
 
 def plain_name(name: str) -> str:
-    """An entry point as C++ spells it (Itanium C++ ABI, 5.1: ``_Z``, a length, the name, for a
-    function outside of namespaces)."""
+    """Return the name of an entry point without C++ mangling (Itanium C++ ABI, 5.1).
+
+    ``_Z``, a length, the name, for a function outside of namespaces.
+    """
     found = _MANGLED.match(name)
     return found[2][: int(found[1])] if found else name
 
 
 def strip_decoration(proc: str) -> str:
-    """``__closesthit__radiance`` without OptiX's decoration: ``radiance``."""
+    """Return a name without OptiX's decoration: ``radiance`` for ``__closesthit__radiance``."""
     if proc.startswith("__"):
         kind, _, rest = proc[2:].partition("__")
         if kind in _DECORATIONS and rest:
@@ -33,9 +35,9 @@ def strip_decoration(proc: str) -> str:
 
 
 def stand_in(folder: Path, file: str) -> Path | None:
-    """The Python file behind ``file``: itself, or the sibling ``x.py`` of an ``x.ptx``.
+    """Return the Python file behind ``file``: itself, or the sibling ``x.py`` of an ``x.ptx``.
 
-    ``plugin:NAME`` names the programs of a plug-in. None where there is neither.
+    ``plugin:NAME`` names the programs of a plug-in. Return None if there is neither.
     """
     if file.startswith(PREFIX):
         return program_files().get(file.removeprefix(PREFIX))
@@ -50,8 +52,10 @@ def stand_in(folder: Path, file: str) -> Path | None:
 
 
 def launches_ptx(pass_: RaytracePass, folder: Path, programs: str = "") -> bool:
-    """Whether a pass runs compiled programs: its ray generation program is one that is there.
-    ``programs``: ``py`` asks for the Python files beside them instead."""
+    """Test if a pass runs compiled programs: its ray generation program is one that exists.
+
+    ``programs``: ``py`` requests the Python files beside them instead.
+    """
     entry = pass_.rtEntryPoint
     file = (entry.rayGen.file if entry and entry.rayGen else None) or ""
     return programs != "py" and file.lower().endswith(COMPILED) and resolve(folder, file).exists

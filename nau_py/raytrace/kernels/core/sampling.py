@@ -1,4 +1,4 @@
-"""Random numbers keyed by (seed, pixel, sample, dimension), and what is drawn from them.
+"""Random numbers keyed by (seed, pixel, sample, dimension), and the directions made of them.
 
 Points are Sobol's, padded pair by pair and scrambled as in Burley, *Practical Hash-based Owen
 Scrambling*, JCGT 9(4), 2020; the first 2^k samples of a pixel are as well spread as any can be.
@@ -21,7 +21,8 @@ _8 = np.uint32(8)
 
 @inner
 def pcg4d(x: np.uint32, y: np.uint32, z: np.uint32, w: np.uint32) -> np.uint32:
-    """The first word of pcg4d; Jarzynski and Olano, *Hash Functions for GPU Rendering*, 2020."""
+    """Return the first word of pcg4d; Jarzynski and Olano, *Hash Functions for GPU Rendering*,
+    2020."""
     x = np.uint32(x * _M + _C)
     y = np.uint32(y * _M + _C)
     z = np.uint32(z * _M + _C)
@@ -39,12 +40,13 @@ def pcg4d(x: np.uint32, y: np.uint32, z: np.uint32, w: np.uint32) -> np.uint32:
 
 @inner
 def sample_1d(seed: np.uint32, pixel: np.uint32, sample: np.uint32, dimension: np.uint32) -> float:
-    """A number in [0, 1)."""
+    """Return a number in [0, 1)."""
     return float(pcg4d(pixel, sample, dimension, seed) >> _8) * _TO_UNIT
 
 
 @inner
 def reverse_bits(x: np.uint32) -> np.uint32:
+    """Return the bits of ``x`` from the lowest to the highest."""
     x = np.uint32((x << np.uint32(16)) | (x >> np.uint32(16)))
     m = np.uint32(0x00FF00FF)
     x = np.uint32(((x & m) << np.uint32(8)) | ((x >> np.uint32(8)) & m))
@@ -58,7 +60,7 @@ def reverse_bits(x: np.uint32) -> np.uint32:
 
 @inner
 def scramble_bits(x: np.uint32, seed: np.uint32) -> np.uint32:
-    """The permutation of Burley's listing 3, on reversed bits."""
+    """Return the permutation of Burley's listing 3, on reversed bits."""
     x = np.uint32(x + seed)
     x = np.uint32(x ^ (x * np.uint32(0x6C50B47C)))
     x = np.uint32(x ^ (x * np.uint32(0xB82F1E52)))
@@ -70,7 +72,7 @@ def scramble_bits(x: np.uint32, seed: np.uint32) -> np.uint32:
 def sample_2d(
     seed: np.uint32, pixel: np.uint32, sample: np.uint32, dimension: np.uint32
 ) -> tuple[float, float]:
-    """Two numbers in [0, 1): point ``sample`` of a (0, 2)-sequence of its own per dimension."""
+    """Return two numbers in [0, 1): point ``sample`` of the (0, 2)-sequence of the dimension."""
     key = pcg4d(pixel, dimension, np.uint32(0x9E3779B9), seed)
     index = reverse_bits(scramble_bits(reverse_bits(sample), key))
     second = np.uint32(0)
@@ -90,7 +92,8 @@ def sample_2d(
 
 @inner
 def sample_disk(x: float, y: float) -> tuple[float, float]:
-    """A uniform point of the unit disk; Shirley and Chiu's concentric map, JGT 2(3), 1997."""
+    """Return a uniform point of the unit disk; Shirley and Chiu's concentric map, JGT 2(3),
+    1997."""
     a, b = 2.0 * x - 1.0, 2.0 * y - 1.0
     if a == 0.0 and b == 0.0:
         return 0.0, 0.0
@@ -103,14 +106,14 @@ def sample_disk(x: float, y: float) -> tuple[float, float]:
 
 @inner
 def sample_hemisphere(x: float, y: float) -> V3:
-    """A direction about +z with density cos/pi (Malley's method)."""
+    """Return a direction about +z with density cos/pi (Malley's method)."""
     a, b = sample_disk(x, y)
     return a, b, sqrt(max(0.0, 1.0 - a * a - b * b))
 
 
 @inner
 def sample_sphere(x: float, y: float) -> V3:
-    """A uniform direction."""
+    """Return a uniform direction."""
     z = 1.0 - 2.0 * x
     r = sqrt(max(0.0, 1.0 - z * z))
     return r * cos(2.0 * pi * y), r * sin(2.0 * pi * y), z

@@ -43,7 +43,7 @@ def multiply(a: V3, b: V3) -> V3:
 
 @inner
 def normalize(a: V3) -> V3:
-    """The unit vector along ``a``; zero stays zero."""
+    """Return the unit vector along ``a``; zero stays zero."""
     length = sqrt(dot(a, a))
     if length > 0.0:
         inverse = 1.0 / length
@@ -53,14 +53,14 @@ def normalize(a: V3) -> V3:
 
 @inner
 def reflect(d: V3, n: V3) -> V3:
-    """The mirror direction d - 2 (d·n) n about the unit normal ``n``."""
+    """Return the mirror direction d - 2 (d·n) n about the unit normal ``n``."""
     k = 2.0 * dot(d, n)
     return (d[0] - k * n[0], d[1] - k * n[1], d[2] - k * n[2])
 
 
 @inner
 def make_frame(n: V3) -> tuple[V3, V3]:
-    """Two unit vectors that make a right-handed frame with the unit vector ``n``.
+    """Return two unit vectors that make a right-handed frame with the unit vector ``n``.
 
     Duff et al., *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
     """
@@ -74,7 +74,7 @@ def make_frame(n: V3) -> tuple[V3, V3]:
 
 @inner
 def from_frame(s: V3, t: V3, n: V3, x: float, y: float, z: float) -> V3:
-    """x s + y t + z n."""
+    """Return x s + y t + z n."""
     return (
         x * s[0] + y * t[0] + z * n[0],
         x * s[1] + y * t[1] + z * n[1],

@@ -33,7 +33,7 @@ TEXTURE = np.dtype(
     align=True,
 )
 """A texture object: address of the texels, row 0 at the bottom; ``bytes``: they are read as 0 to 1,
-else they are float32; ``dimensions``: 2 or 3, in which it must be asked for, else all is 0;
+else they are float32; ``dimensions``: 2 or 3, dimensions of the fetch, else it returns 0;
 ``linear``: between texels, else the nearest; ``clamp``: 1 for the first axis, 2 for the second:
 the last texel goes on, else the texture repeats; ``by_texel``: coordinates count texels;
 ``exact``: weights are not rounded to 8 bits."""
@@ -80,7 +80,7 @@ def _wrapped(index: int, size: int, clamp: int) -> int:
 
 @inner
 def _texel(handle: Any, texels: Any, at: int, channel: int) -> float:
-    """One channel of a texel; missing ones are 0."""
+    """Return one channel of a texel; missing ones are 0."""
     channels = i32(handle, 5)
     if channel >= channels:
         return 0.0
@@ -96,7 +96,7 @@ def _scaled(x: float, size: int, by_texel: bool) -> float:
 
 @inner
 def _nearest(x: float, scaled: float, size: int, plain: bool) -> int:
-    """The texel at a coordinate; one that repeats is reduced before it is scaled."""
+    """Return the texel at a coordinate; one that repeats is reduced before it is scaled."""
     return floor(scaled) if plain else min(int((x - floor(x)) * size), size - 1)
 
 
@@ -111,7 +111,7 @@ def _plane(
     handle: Any, texels: Any, row: int, left: int, right: int, low: int, high: int,
     a: float, b: float, channel: int,
 ) -> float:  # fmt: skip
-    """Between four texels; ``row``: the first texel of the plane."""
+    """Interpolate between four texels; ``row``: the first texel of the plane."""
     under = _texel(handle, texels, row + low + left, channel) * (1 - a)
     under += _texel(handle, texels, row + low + right, channel) * a
     over = _texel(handle, texels, row + high + left, channel) * (1 - a)

@@ -65,7 +65,7 @@ def _move_outward(value: float, offset: float) -> float:
 
 @inner
 def offset_origin(position: V3, normal: V3, bound: float, direction: V3) -> V3:
-    """The origin of a ray that leaves along ``direction``: on its side of the face."""
+    """Return the origin of a ray that leaves along ``direction``: on its side of the face."""
     step = bound if dot(normal, direction) >= 0.0 else -bound
     return (
         _move_outward(position[0], normal[0] * step),
@@ -76,7 +76,7 @@ def offset_origin(position: V3, normal: V3, bound: float, direction: V3) -> V3:
 
 @inner
 def interpolate_attribute(values: int, scene: Any, triangle: int, u: float, v: float) -> V3:
-    """The first three components of the vertex attribute at address ``values``."""
+    """Interpolate the first three components of the vertex attribute at address ``values``."""
     a = 4 * i32(scene.triangles, 3 * triangle)
     b = 4 * i32(scene.triangles, 3 * triangle + 1)
     c = 4 * i32(scene.triangles, 3 * triangle + 2)
@@ -90,7 +90,7 @@ def interpolate_attribute(values: int, scene: Any, triangle: int, u: float, v: f
 
 @inner
 def interpolate_normal(scene: Any, triangle: int, u: float, v: float, face: V3) -> V3:
-    """The interpolated unit normal; the face normal where the vertices give none."""
+    """Return the interpolated unit normal; the face normal where the vertices give none."""
     if scene.normals_count == 0:
         return face
     if i8(scene.smooth, triangle) == 0:
@@ -128,7 +128,7 @@ def interpolate_uv(scene: Any, triangle: int, u: float, v: float) -> tuple[float
 
 @inner
 def evaluate_texture(scene: Any, material: Any, triangle: int, u: float, v: float) -> RGBA:
-    """The texture of unit 0 at a hit; white where the material has none."""
+    """Return the texture of unit 0 at a hit; white if the material has none."""
     if material.texture < 0:
         return 1.0, 1.0, 1.0, 1.0
     s, t = interpolate_uv(scene, triangle, u, v)
@@ -137,7 +137,7 @@ def evaluate_texture(scene: Any, material: Any, triangle: int, u: float, v: floa
 
 @inner
 def evaluate_alpha(scene: Any, material: Any, triangle: int, u: float, v: float) -> float:
-    """The last component of ``evaluate_texture``."""
+    """Return the last component of ``evaluate_texture``."""
     if material.texture < 0:
         return 1.0
     s, t = interpolate_uv(scene, triangle, u, v)
@@ -146,7 +146,7 @@ def evaluate_alpha(scene: Any, material: Any, triangle: int, u: float, v: float)
 
 @inner
 def lift_point(scene: Any, triangle: int, u: float, v: float, position: V3, side: float) -> V3:
-    """Where shadow rays of a smooth surface begin: on the curved patch that the normals suggest.
+    """Return the origin of shadow rays of a smooth surface: on the patch that the normals suggest.
 
     Hanika, *Hacking the Shadow Terminator*, Ray Tracing Gems II, 2021. ``side``: 1 where the
     surface is seen from its front, else -1.
@@ -171,7 +171,7 @@ def lift_point(scene: Any, triangle: int, u: float, v: float, position: V3, side
 
 @inner
 def keep_above(direction: V3, geometric: V3) -> V3:
-    """``direction``, turned back over the face where an interpolated normal sent it below."""
+    """Return ``direction``, turned back over the face if an interpolated normal sent it below."""
     below = dot(direction, geometric)
     if below >= 0.0:
         return direction

@@ -15,7 +15,7 @@ REPEAT, MIRRORED_REPEAT, CLAMP_TO_EDGE, CLAMP_TO_BORDER = 0, 1, 2, 3
 
 @inner
 def wrap_index(index: float, size: float, rule: int) -> int:
-    """The texel index by wrap rule; -1 on the border colour."""
+    """Return the texel index by wrap rule; -1 on the border colour."""
     if 0.0 <= index < size:
         return int(index)
     if rule == REPEAT:
@@ -30,7 +30,7 @@ def wrap_index(index: float, size: float, rule: int) -> int:
 
 @inner
 def fetch_texel(texture: Any, texels: int, x: float, y: float) -> RGBA:
-    """One texel, 0 to 255; ``texels``: the address of the bytes, in the order R, G, B, A."""
+    """Return one texel, 0 to 255; ``texels``: the address of the bytes, in the order R, G, B, A."""
     column = wrap_index(x, float(texture.width), texture.wrap_s)
     row = wrap_index(y, float(texture.height), texture.wrap_t)
     if column < 0 or row < 0:
@@ -41,7 +41,7 @@ def fetch_texel(texture: Any, texels: int, x: float, y: float) -> RGBA:
 
 @inner
 def unpack_bytes(word: int) -> RGBA:
-    """The four bytes of a texel."""
+    """Return the four bytes of a texel."""
     return (
         float(word & 255),
         float((word >> 8) & 255),
@@ -52,7 +52,7 @@ def unpack_bytes(word: int) -> RGBA:
 
 @inner
 def scale_to_texels(texture: Any, s: float, t: float) -> tuple[float, float]:
-    """Texture coordinates in texels. Those that repeat are brought into the image first."""
+    """Return texture coordinates in texels. Those that repeat are brought into the image first."""
     if not (isfinite(s) and isfinite(t)):
         return 0.0, 0.0
     if texture.wrap_s == REPEAT:
@@ -64,13 +64,13 @@ def scale_to_texels(texture: Any, s: float, t: float) -> tuple[float, float]:
 
 @inner
 def is_interior(texture: Any, x0: float, y0: float) -> bool:
-    """Whether the four texels from (x0, y0) on lie in the image."""
+    """Test if the four texels from (x0, y0) on are in the image."""
     return bool(x0 >= 0.0 and y0 >= 0.0 and x0 + 1 < texture.width and y0 + 1 < texture.height)
 
 
 @inner
 def filter_texture(texture: Any, texels: int, s: float, t: float) -> RGBA:
-    """RGBA at texture coordinates; the linear filter of the OpenGL 4.5 specification, 8.14.2."""
+    """Return RGBA at texture coordinates; the linear filter of OpenGL 4.5, 8.14.2."""
     x, y = scale_to_texels(texture, s, t)
     if texture.nearest:
         a = fetch_texel(texture, texels, floor(x), floor(y))
@@ -100,7 +100,7 @@ def filter_texture(texture: Any, texels: int, s: float, t: float) -> RGBA:
 
 @inner
 def filter_alpha(texture: Any, texels: int, s: float, t: float) -> float:
-    """The last component of ``filter_texture``, for less."""
+    """Return the last component of ``filter_texture``, in less time."""
     x, y = scale_to_texels(texture, s, t)
     x0, y0 = floor(x - 0.5), floor(y - 0.5)
     if texture.nearest or not is_interior(texture, x0, y0):
