@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import os
 import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -69,7 +70,7 @@ def plaza() -> Iterator[None]:
     kept: dict[bool, Model] = {}
 
     def read_once(path: Path, swap_yz: bool) -> Model:
-        if path.resolve() != PROJECTS / "models" / "plaza" / "plaza.obj":
+        if Path(os.path.abspath(path)) != PROJECTS / "models" / "plaza" / "plaza.obj":
             return read(path, swap_yz)
         if swap_yz not in kept:
             kept[swap_yz] = read(path, swap_yz)
