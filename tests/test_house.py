@@ -37,6 +37,7 @@ HEAVY = {
     "lxml",
     "matplotlib",
     "moderngl",
+    "nau_py.raytrace.ptx.optix.compile",
     "networkx",
     "numba",
     "psutil",
@@ -44,9 +45,11 @@ HEAVY = {
     "rich",
     "starlette",
     "uvicorn",
+    "xml",
 }
 """Packages that take long to import. Only they, and modules that need them, may be imported inside
-a function: ``nau-lint`` and ``import nau_py`` start without them."""
+a function: ``nau-lint`` and ``import nau_py`` start without them.
+``xml.sax`` imports HTTP and SSL; the compiler of PTX has thirty modules, which few projects need."""
 NOT_EVERYWHERE = {"resource"}
 """Modules of the standard library that some systems lack."""
 ARROWS = {

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from html import escape
 from textwrap import wrap
 from typing import Any
-from xml.sax.saxutils import escape
 
 from nau_py.graph.layout import Arrow, Box, Size, lay_out
 from nau_py.graph.network import Network

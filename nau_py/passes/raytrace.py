@@ -35,7 +35,6 @@ from nau_py.passes.frame import FrameContext
 from nau_py.passes.registry import PassClass, register_pass
 from nau_py.passes.report import PassReport, Stages
 from nau_py.raytrace.programs.source import launches_ptx
-from nau_py.raytrace.ptx.host.faults import check_programs
 
 
 @register_pass("raytrace", "rt", "optix")
@@ -111,6 +110,8 @@ class RaytraceClass(PassClass):
     def faults(self, project: Project, pass_: Pass) -> Iterable[Diagnostic]:
         """Return the faults of compiled programs that cannot run."""
         if isinstance(pass_, RaytracePass) and launches_ptx(pass_, project.folder):
+            from nau_py.raytrace.ptx.host.faults import check_programs
+
             return check_programs(project, pass_)
         return ()
 

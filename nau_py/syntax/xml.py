@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from xml.sax.saxutils import quoteattr
 
 from nau_py.diagnostics.location import Location
 from nau_py.diagnostics.problem import Problem, ProblemKind
@@ -191,6 +190,8 @@ def format_xml(root: Element) -> str:
 
 
 def _format(element: Element, depth: int, lines: list[str]) -> None:
+    from xml.sax.saxutils import quoteattr
+
     pad = _INDENT * depth
     attributes = [
         f"{name}={quoteattr(value, {chr(10): '&#10;'})}"

@@ -5,14 +5,18 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from functools import cached_property
-from xml.sax.saxutils import escape
+from html import escape
 
 from nau_py.syntax.document import Document, Edit, find_word, is_same_value
 from nau_py.syntax.xml_markup import TokenGroup, WrittenAttribute, split_markup
 from nau_py.syntax.xml_tokens import Token, TokenKind
 
-_QUOTES = {'"': "&quot;", "'": "&apos;"}
 _NEEDS_QUOTES = re.compile(r"[\s/>]|^$")
+
+
+def escape_value(value: str) -> str:
+    """Escape the value of an attribute for quotes of either kind."""
+    return escape(value, quote=False).replace('"', "&quot;").replace("'", "&apos;")
 
 
 class XmlDocument(Document):
@@ -53,7 +57,7 @@ class XmlDocument(Document):
     def _exchange(self, written: Token, value: str) -> list[Edit]:
         """Replace a value. One without quotes gets them."""
         first, last = written.span
-        new = escape(value, _QUOTES)
+        new = escape_value(value)
         if is_same_value(self.text[first:last], new):
             return []
         return [(first, last, new if written.quote else f'"{new}"')]
@@ -66,7 +70,7 @@ class XmlDocument(Document):
         if written is not None:
             return self._exchange(written.value, value)
         at = tag.content_end
-        return [(at, at, f' {key}="{escape(value, _QUOTES)}"')]
+        return [(at, at, f' {key}="{escape_value(value)}"')]
 
     def set_components(
         self, begin: int, keys: Sequence[tuple[str, ...]], values: Sequence[str]
@@ -84,7 +88,7 @@ class XmlDocument(Document):
         tag = self._tag(begin)
         if tag is None:
             return []
-        attributes = " ".join(f'{k}="{escape(v, _QUOTES)}"' for k, v in zip(keys, values))
+        attributes = " ".join(f'{k}="{escape_value(v)}"' for k, v in zip(keys, values))
         child = f"<{name} {attributes} />"
         outer = self.newline + self.indent(begin)
         inner = f"{outer}  "
@@ -102,11 +106,11 @@ class XmlDocument(Document):
         for attribute in written:
             first, last = attribute.value.span
             raw = self.text[first:last]
-            word = old if old in raw else escape(old, _QUOTES)
+            word = old if old in raw else escape_value(old)
             at = find_word(raw, word)
             if at < 0:
                 continue
-            replacement = escape(new, _QUOTES)
+            replacement = escape_value(new)
             if not attribute.value.quote and _NEEDS_QUOTES.search(replacement):
                 return [(first, last, f'"{raw[:at]}{replacement}{raw[at + len(word) :]}"')]
             return [(first + at, first + at + len(word), replacement)]
