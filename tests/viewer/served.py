@@ -69,7 +69,9 @@ class Served:
 
     def window(self, origin: str | None = None, token: str = TOKEN) -> Window:
         address = f"ws://127.0.0.1:{self.port}/{token}/live"
-        return Window(connect(address, origin=origin, open_timeout=SECONDS))  # type: ignore[arg-type]
+        # without a limit of waiting messages: a full queue would keep the answer to a close, too
+        limits: dict[str, Any] = {"open_timeout": SECONDS, "max_queue": None}
+        return Window(connect(address, origin=origin, **limits))  # type: ignore[arg-type]
 
 
 class Window:
