@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 import networkx
@@ -153,6 +154,12 @@ ARROWS = {
 without it; ``run`` needs ``rules``, as a wrong project must not run."""
 
 
+@cache
+def parse(path: Path) -> ast.Module:
+    """Parse a module, once for all tests."""
+    return ast.parse(path.read_text())
+
+
 def room(parts: list[str]) -> str:
     """Return the room of a module below ``nau_py``.
 
@@ -168,7 +175,7 @@ def room(parts: list[str]) -> str:
 def imports(path: Path) -> set[str]:
     """Names of the nau_py rooms and other top packages that a module imports."""
     found: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in ast.walk(parse(path)):
         names = []
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -220,7 +227,7 @@ def test_only_process_starts_processes() -> None:
         if path.is_relative_to(PACKAGE / "process"):
             continue
         assert not imports(path) & starters, path
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(parse(path)):
             if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
                 name = f"{node.value.id}.{node.attr}"
                 starts = ("os.fork", "os.exec", "os.spawn", "os.posix_spawn", "os.system")
@@ -231,7 +238,7 @@ def test_only_process_starts_processes() -> None:
 def test_class_names_are_unique() -> None:
     found: dict[str, list[str]] = {}
     for path in PACKAGE.rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(parse(path)):
             if isinstance(node, ast.ClassDef):
                 found.setdefault(node.name, []).append(str(path.relative_to(PACKAGE)))
     repeated = {name: files for name, files in found.items() if len(files) > 1}
@@ -294,7 +301,7 @@ def package_imports() -> dict[str, Imports]:
     for path in PACKAGE.rglob("*.py"):
         parts = path.relative_to(PACKAGE.parent).with_suffix("").parts
         names[".".join(parts).removesuffix(".__init__")] = path
-    return {name: Imports(ast.parse(path.read_text()), set(names)) for name, path in names.items()}
+    return {name: Imports(parse(path), set(names)) for name, path in names.items()}
 
 
 def test_modules_import_each_other_without_circles(package_imports: dict[str, Imports]) -> None:
@@ -342,7 +349,7 @@ NOT_YET = {
 
 def list_docstrings(path: Path) -> Iterable[str]:
     """Yield the docstrings of a file: those of modules, classes, functions and constants."""
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in ast.walk(parse(path)):
         body = getattr(node, "body", None)
         for part in body if isinstance(body, list) else []:
             value = part.value if isinstance(part, ast.Expr) else None
@@ -364,7 +371,7 @@ def test_only_the_command_line_prints() -> None:
     for path in PACKAGE.rglob("*.py"):
         if "cli" in path.parts:
             continue
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(parse(path)):
             called = node.func if isinstance(node, ast.Call) else None
             assert not (isinstance(called, ast.Name) and called.id == "print"), path
 

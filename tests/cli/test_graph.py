@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.test_commands import SELECTIVE, run
+from tests.cli.test_commands import SELECTIVE, call
 
 
 def write_report(path: Path, pipeline: str = "Selective") -> Path:
@@ -22,7 +22,7 @@ def write_report(path: Path, pipeline: str = "Selective") -> Path:
 def test_times_give_the_critical_path(tmp_path: Path) -> None:
     report = write_report(tmp_path / "report.json")
     out = tmp_path / "graph.svg"
-    done = run("nau-graph", SELECTIVE, "--times", str(report), "-o", str(out))
+    done = call("nau-graph", SELECTIVE, "--times", str(report), "-o", str(out))
     assert done.returncode == 0, done.stderr
     assert done.stderr == (
         "critical path: shadow 1.5 ms → raster 4.0 ms → trace 20.0 ms → combine 0.5 ms = 26.0 ms "
@@ -32,7 +32,7 @@ def test_times_give_the_critical_path(tmp_path: Path) -> None:
 
 
 def test_node_link_is_json_for_networkx() -> None:
-    done = run("nau-graph", SELECTIVE, "--format", "node-link")
+    done = call("nau-graph", SELECTIVE, "--format", "node-link")
     data = json.loads(done.stdout)
     assert data["directed"] is True
     assert {n["id"] for n in data["nodes"]} >= {"pass trace", "texture Hybrid::radiance", "window"}
@@ -51,7 +51,7 @@ def test_a_wrong_report_is_wrong_use(tmp_path: Path, text: str | None, message: 
     path = tmp_path / "report.json"
     if text is not None:
         path.write_text(text)
-    done = run("nau-graph", SELECTIVE, "--times", str(path), COLUMNS="300", TERM="dumb")
+    done = call("nau-graph", SELECTIVE, "--times", str(path), COLUMNS="300", TERM="dumb")
     assert done.returncode == 2
     assert message in done.stderr
     assert done.stdout == ""

@@ -15,12 +15,12 @@ from nau_py.raytrace.tracing.accelerator import ISA_VARIABLE, read_isa_limit
 from tests.conftest import PROJECTS
 
 SIZE, SAMPLES = 64, 4
-PROJECT = PROJECTS / "half" / "project.xml"
+PROJECT = PROJECTS / "mirror" / "project.xml"
 WITHOUT_ISA = "cannot run Embree with the instruction set"
 
 
 def run(isa: str, output: Path) -> subprocess.CompletedProcess[str]:
-    """Render the half-and-half demo in a process whose Embree is held to ``isa``."""
+    """Render a sample in a process whose Embree is held to ``isa``."""
     command = Path(sys.executable).parent / "nau-run"
     words = [str(command), str(PROJECT), "-o", str(output), "--quiet"]
     words += ["--size", f"{SIZE}x{SIZE}", "--spp", str(SAMPLES)]
