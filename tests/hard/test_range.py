@@ -175,7 +175,7 @@ def test_determinism() -> None:
     for threads, tile in ((1, 1 << 24), (1, 8), (2, 64), (4, 777)):
         project = nau_py.load(PROJECTS / "selective" / "project.xml")
         options = nau_py.RunOptions(threads=threads, tile=tile, samples=4)
-        frame = nau_py.Renderer(project, size=(96, 96), options=options).render()
+        frame = nau_py.Renderer(project, size=(48, 48), options=options).render()
         pictures.append(frame.targets["Hybrid::radiance"].tobytes())
     assert len(set(pictures)) == 1
 
