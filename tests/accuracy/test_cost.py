@@ -7,6 +7,7 @@ import io
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import jsonschema
@@ -21,6 +22,7 @@ from nau_py.accuracy.cost import CostRequest, CostRun, measure_cost
 from nau_py.accuracy.document import write_document
 from nau_py.accuracy.front_chart import draw_front
 from nau_py.accuracy.page import find_worst_square, write_page
+from nau_py.accuracy.ranking import Ranking
 from nau_py.accuracy.report import SettingCost, make_schema, to_csv, to_json
 from nau_py.accuracy.statistics import compute_spread
 from nau_py.run.pipeline_choice import choose_pipeline
@@ -96,8 +98,17 @@ def test_more_samples_less_error(folder: Folder) -> None:
     own = found.report.reference.own_rmse["picture"]
     assert own is not None
     assert own < rmse(settings[64])
-    assert found.report.halving is not None
     assert {"gl_renderer", "processor", "numpy", "embreex", "nau_py"} <= set(found.report.machine)
+
+
+def test_the_time_that_halves_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Independent samples: the error falls with the root of the time, so half of it costs four times."""
+    ladder = [SimpleNamespace(stages={"trace": [n], "shade": [2.0 * n]}) for n in (4.0, 16.0, 64.0)]
+    monkeypatch.setattr(Ranking, "select_ladder", lambda self, knob: ladder)
+    monkeypatch.setattr(Ranking, "beats_reference", lambda self, m: False)
+    monkeypatch.setattr(Ranking, "locate", lambda self, m: (0.0, m.stages["trace"][0] ** -0.5))
+    truth = SimpleNamespace(own_mse=lambda region: 0.0)
+    assert Ranking("rmse", "picture", truth, []).halving == pytest.approx(4)  # type: ignore[arg-type]
 
 
 def test_the_files(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -214,6 +225,7 @@ def test_an_unreachable_target(folder: Folder) -> None:
     assert found.chosen is None
 
 
+@pytest.mark.slow  # compares measured times: for a machine that does nothing else
 def test_a_budget_is_kept_and_verified(folder: Folder) -> None:
     """Between what few and many samples take."""
     project = penumbra(folder)

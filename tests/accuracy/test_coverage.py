@@ -61,7 +61,7 @@ def render(project: nau_py.Project, seed: int, samples: int) -> nau_py.Frame:
     "scene, sampler",
     [
         (shadow, "SOBOL"),
-        (corner, "RANDOM"),
+        pytest.param(corner, "RANDOM", marks=pytest.mark.slow),
         pytest.param(shadow, "RANDOM", marks=pytest.mark.slow),
         pytest.param(corner, "SOBOL", marks=pytest.mark.slow),
     ],

@@ -28,7 +28,7 @@ def run(isa: str, output: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, env=environment, capture_output=True, text=True)
 
 
-@pytest.mark.parametrize("isa", ["sse4.2", "avx2"])
+@pytest.mark.parametrize("isa", ["sse4.2", pytest.param("avx2", marks=pytest.mark.slow)])
 def test_instruction_sets_agree_within_the_stated_tolerance(isa: str, tmp_path: Path) -> None:
     """At most 1 of 255 a channel, in at most 1 % of the pixels."""
     file = tmp_path / "picture.npy"
