@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, field
-from functools import lru_cache
 from pathlib import Path
 
 from nau_py.diagnostics.location import Location
-from nau_py.raytrace.programs.source import strip_decoration
+from nau_py.raytrace.programs.source import parse_program, strip_decoration
 
 Colour = tuple[float, ...]
 
@@ -83,19 +82,8 @@ def find_sent_kinds(path: Path, proc: str) -> frozenset[str]:
     """Find the kinds of rays that a Python program names in its calls of ``trace``, also in the
     functions of its file that it calls. Reads the file, runs nothing; empty if it cannot be parsed.
     """
-    try:
-        found = path.stat()
-    except OSError:
-        return frozenset()
-    return _find_sent_kinds(path, proc, found.st_mtime_ns, found.st_size)
-
-
-@lru_cache(maxsize=256)
-def _find_sent_kinds(path: Path, proc: str, time: int, size: int) -> frozenset[str]:
-    """Parse each version of a file once."""
-    try:
-        tree = ast.parse(path.read_bytes(), str(path))
-    except (OSError, SyntaxError, ValueError):
+    tree = parse_program(path)
+    if tree is None:
         return frozenset()
     functions = {n.name: n for n in tree.body if isinstance(n, ast.FunctionDef)}
     found: set[str] = set()

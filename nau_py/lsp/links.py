@@ -19,7 +19,7 @@ from nau_py.model.shader import STAGES, Shader
 from nau_py.model.walk import walk_nodes
 from nau_py.process.paths import resolve
 from nau_py.raytrace.programs.neighbours import read_neighbour_imports
-from nau_py.raytrace.programs.source import stand_in, strip_decoration
+from nau_py.raytrace.programs.source import parse_program, stand_in, strip_decoration
 
 _UNIFORM = r"\buniform\b[^;{{}}]*?\b({})\b\s*(?:\[[^\]]*\]\s*)?[;=,]"
 _WORD = re.compile(r"\w+")
@@ -85,9 +85,8 @@ def list_procedures(path: Path) -> dict[str, Location]:
 
 def _list_procedures(path: Path, importers: frozenset[Path]) -> dict[str, Location]:
     """List the procedures of a file that ``importers`` import, directly or not."""
-    try:
-        tree = ast.parse(path.read_bytes(), str(path))
-    except (OSError, SyntaxError, ValueError):
+    tree = parse_program(path)
+    if tree is None:
         return {}
     found: dict[str, Location] = {}
     for name, (other, there) in read_neighbour_imports(tree, path.parent).names.items():

@@ -10,8 +10,8 @@ from nau_py.diagnostics.diagnostic import Diagnostic
 from nau_py.diagnostics.suggest import format_names, suggest_fix, suggest_name
 from nau_py.model.raytrace import RaytracePass
 from nau_py.process.paths import resolve
-from nau_py.raytrace.programs.source import launches_ptx, stand_in
-from nau_py.raytrace.programs.used import UsedProgram, is_compiled, used_programs
+from nau_py.raytrace.programs.source import is_compiled, launches_ptx, stand_in
+from nau_py.raytrace.programs.used import UsedProgram, used_programs
 from nau_py.raytrace.ptx.compiler.exports import program_kind, read_exports
 from nau_py.rules.ray_programs import T004, T005
 from nau_py.rules.raytrace import raytrace_passes

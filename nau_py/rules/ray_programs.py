@@ -14,7 +14,7 @@ from nau_py.model.raytrace import BUILTIN, Program
 from nau_py.plugins import PREFIX, program_files
 from nau_py.process.paths import resolve, similar
 from nau_py.raytrace.programs.catalogue import BUILTIN_PROGRAMS
-from nau_py.raytrace.programs.source import launches_ptx, stand_in, strip_decoration
+from nau_py.raytrace.programs.source import launches_ptx, parse_program, stand_in, strip_decoration
 from nau_py.raytrace.programs.used import UsedProgram, used_programs
 from nau_py.raytrace.ptx.compiler.exports import read_exports
 from nau_py.rules.raytrace import raytrace_passes
@@ -135,9 +135,8 @@ def defined_names(path: Path) -> list[str] | None:
 
     Returns None for a file that does not parse, and for one that imports all names of a module.
     """
-    try:
-        tree = ast.parse(path.read_bytes(), str(path))
-    except (OSError, SyntaxError, ValueError):
+    tree = parse_program(path)
+    if tree is None:
         return None
     names = [n.name for n in tree.body if isinstance(n, ast.FunctionDef)]
     for node in tree.body:

@@ -13,6 +13,8 @@ from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
 
+from nau_py.raytrace.programs.source import parse_program
+
 
 def find_neighbour(folder: Path, name: str) -> Path | None:
     """Return the file that ``import name`` means in a program of ``folder``.
@@ -21,9 +23,11 @@ def find_neighbour(folder: Path, name: str) -> Path | None:
     package.
     """
     path = folder / f"{name}.py"
-    if not name.isidentifier() or not path.is_file() or _is_installed(name, Path.cwd()):
+    try:
+        exists = name.isidentifier() and path.is_file()
+    except OSError:  # a name longer than the file system allows
         return None
-    return path
+    return path if exists and not _is_installed(name, Path.cwd()) else None
 
 
 @lru_cache(maxsize=256)
@@ -90,31 +94,14 @@ def list_imported_functions(path: Path) -> list[tuple[Path, str]]:
 
 def _list_imports(path: Path) -> tuple[tuple[Path, str], ...]:
     """Return file and name of the functions that a file itself imports from neighbours."""
-    tree = _parse(path)
+    tree = parse_program(path)
     if tree is None:
         return ()
     imports = read_neighbour_imports(tree, path.parent)
     whole = [*imports.modules.values(), *(p for p, name in imports.names.values() if name == "*")]
     found = [(other, name) for other, name in imports.names.values() if name != "*"]
     for other in whole:
-        functions = _parse(other)
+        functions = parse_program(other)
         body = functions.body if functions is not None else []
         found += [(other, node.name) for node in body if isinstance(node, ast.FunctionDef)]
     return tuple(found)
-
-
-def _parse(path: Path) -> ast.Module | None:
-    """Parse a Python file; each version of it once. None if it cannot be read or parsed."""
-    try:
-        found = path.stat()
-    except OSError:
-        return None
-    return _parse_version(path, found.st_mtime_ns, found.st_size)
-
-
-@lru_cache(maxsize=256)
-def _parse_version(path: Path, time: int, size: int) -> ast.Module | None:
-    try:
-        return ast.parse(path.read_bytes(), str(path))
-    except (OSError, SyntaxError, ValueError):
-        return None

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from nau_py.model.raytrace import Program, RaytracePass
 from nau_py.raytrace.programs.description import EXCEPTION, RAY_GENERATION
-from nau_py.raytrace.programs.source import COMPILED
+from nau_py.raytrace.programs.source import is_compiled
 
 
 class UsedProgram(NamedTuple):
@@ -16,11 +16,6 @@ class UsedProgram(NamedTuple):
     program: Program
     kind: str
     owner: list[str]
-
-
-def is_compiled(program: Program | None) -> bool:
-    """Return True for a program whose file is PTX."""
-    return program is not None and (program.file or "").lower().endswith(COMPILED)
 
 
 def used_programs(pass_: RaytracePass) -> Iterator[UsedProgram]:

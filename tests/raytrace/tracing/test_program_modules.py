@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
@@ -9,6 +10,8 @@ import pytest
 
 import nau_py
 from nau_py.model.node import Setting
+from nau_py.raytrace.programs.neighbours import list_imported_functions
+from nau_py.raytrace.programs.source import parse_program
 from nau_py.run.reload import HotReload
 from nau_py.run.renderer import Renderer
 from nau_py.run.used_files import PROGRAM, used_files
@@ -209,3 +212,30 @@ def test_rays_that_a_neighbour_sends_are_called_for(
     assert reflection["called_for"]
     assert reflection["status"] == "simulated"
     assert frame.report["totals"]["rays"]["reflection"] > 0
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        f"import {'a' * 300}\n\ndef shade(hits):\n    pass\n",
+        f"from {'a' * 300} import b\n\ndef shade(hits):\n    pass\n",
+        f"depth = {'-' * 200_000}1\n\ndef shade(hits):\n    pass\n",
+    ],
+    ids=["long_name", "long_module", "deep"],
+)
+def test_sources_that_break_a_parser_are_linted(
+    wall: Folder, ray_project: RayProject, source: str
+) -> None:
+    """Names beyond the limit of the file system, and nesting beyond that of the parser."""
+    file = wall.write("prog.py", source)
+    assert not [d for d in nau_py.lint(ray_project(BINDING)) if d.severity == "error"]
+    assert list_imported_functions(file) == []
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
+def test_a_pipe_as_neighbour_is_not_read(wall: Folder, ray_project: RayProject) -> None:
+    file = wall.write("prog.py", "import common\n\ndef shade(hits):\n    pass\n")
+    os.mkfifo(wall.path / "common.py")
+    assert not [d for d in nau_py.lint(ray_project(BINDING)) if d.severity == "error"]
+    assert list_imported_functions(file) == []
+    assert parse_program(wall.path / "common.py") is None
