@@ -14,10 +14,10 @@ from nau_py.model.raytrace import GEOMETRY_KINDS, Program, RaytracePass
 from nau_py.raytrace.programs.description import MISS
 from nau_py.raytrace.programs.used import used_programs
 from nau_py.raytrace.ptx.compiler.analysis import ProgramUses, analyse_program
-from nau_py.raytrace.ptx.compiler.module import PtxError, PtxModule
+from nau_py.raytrace.ptx.compiler.module import PtxModule
 from nau_py.raytrace.ptx.host.modules import Modules, find_function, program_path
-from nau_py.raytrace.ptx.host.variable_faults import list_variables, value_bytes
-from nau_py.raytrace.ptx.optix.variables import declared_variables, uses_variables
+from nau_py.raytrace.ptx.host.variable_faults import find_named_variables, value_bytes
+from nau_py.raytrace.ptx.optix.variables import uses_variables
 
 HIT_RECORD, OTHER_RECORD = 112, 16
 """Bytes of data in a hit record, and in a record of ray generation or a miss."""
@@ -120,19 +120,13 @@ def _check_payloads(pass_: RaytracePass, used: list[UsedCode]) -> Iterator[Diagn
 def _check_old_payloads(pass_: RaytracePass, used: list[UsedCode]) -> Iterator[Diagnostic]:
     most = max((size for _, _, uses in used for size in uses.sent_bytes), default=0)
     for program, module, _ in used if most else []:
-        try:
-            names = declared_variables(module)
-        except PtxError:
-            continue  # reported by check_modules
-        function = find_function(module, program.proc or "")
-        for name in list_variables(function, names) if function is not None else []:
-            size = names[name].size
-            if names[name].semantic == "rtPayload" and size > most:
+        for name, variable in find_named_variables(module, program.proc or "").items():
+            if variable.semantic == "rtPayload" and variable.size > most:
                 yield warning(
                     "T021",
                     program.where("proc"),
-                    f"{_label(pass_, program)} has a payload '{name}' of {size} bytes, but rays "
-                    f"carry {most}",
+                    f"{_label(pass_, program)} has a payload '{name}' of {variable.size} bytes, "
+                    f"but rays carry {most}",
                 )
 
 

@@ -10,7 +10,7 @@ from nau_py.diagnostics.suggest import format_names, suggest_name
 from nau_py.model.linked import Project
 from nau_py.model.raytrace import Program, RaytracePass, RayVariable
 from nau_py.raytrace.programs.used import used_programs
-from nau_py.raytrace.ptx.compiler.module import PtxError, PtxFunction, PtxModule
+from nau_py.raytrace.ptx.compiler.module import PtxError, PtxModule
 from nau_py.raytrace.ptx.host.modules import Modules, find_function, program_path
 from nau_py.raytrace.ptx.optix.variables import DeclaredVariable, declared_variables
 
@@ -47,13 +47,22 @@ def value_bytes(project: Project, node: RayVariable) -> int | None:
     return 4 * attribute.type.components if attribute is not None else None
 
 
-def list_variables(function: PtxFunction, names: dict[str, DeclaredVariable]) -> list[str]:
-    """List the variables that a function's own instructions name, in their order."""
-    found: dict[str, None] = {}
-    for instruction in function.body or []:
+def find_named_variables(module: PtxModule, proc: str) -> dict[str, DeclaredVariable]:
+    """Return the variables that a program's own instructions name, by name and in their order.
+
+    Empty for a program that the module lacks, and for a faulty module: ``check_modules`` reports
+    both.
+    """
+    try:
+        names = declared_variables(module)
+    except PtxError:
+        return {}
+    function = find_function(module, proc)
+    found: dict[str, DeclaredVariable] = {}
+    for instruction in (function.body if function is not None else None) or []:
         for operand in instruction.operands:
-            found |= {w: None for w in _WORD.findall(operand) if w in names}
-    return list(found)
+            found |= {w: names[w] for w in _WORD.findall(operand) if w in names}
+    return found
 
 
 def check_variables(
@@ -68,13 +77,7 @@ def check_variables(
         module = modules.get(program_path(project.folder, program.file))
         if not isinstance(module, PtxModule):
             continue
-        try:
-            names = declared_variables(module)
-        except PtxError:
-            continue  # reported by check_modules
-        function = find_function(module, program.proc or "")
-        for name in list_variables(function, names) if function is not None else []:
-            variable = names[name]
+        for name, variable in find_named_variables(module, program.proc or "").items():
             if name not in seen and not variable.semantic:
                 yield from _check_variable(pass_, program, name, variable, known)
             seen.add(name)
