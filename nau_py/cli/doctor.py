@@ -40,7 +40,7 @@ def examine() -> int:
     try:
         from nau_py.raytrace.tracing.accelerator import ISA_VARIABLE, embree_isa, embree_version
 
-        isa = f"{embree_isa()} ({ISA_VARIABLE} holds it to another instruction set)"
+        isa = f"instruction set {embree_isa()} ({ISA_VARIABLE} chooses another)"
         print(f"Embree      {embree_version()}, embreex {_version('embreex')}, {isa}")
     except DeviceError as problem:
         print(f"Embree      {problem.diagnostics[0].message}")

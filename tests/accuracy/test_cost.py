@@ -21,6 +21,7 @@ from nau_py.accuracy.candidate import make_base, make_candidates, prepare_candid
 from nau_py.accuracy.cost import CostRequest, CostRun, measure_cost
 from nau_py.accuracy.document import write_document
 from nau_py.accuracy.front_chart import draw_front
+from nau_py.accuracy.measure import sum_stages
 from nau_py.accuracy.page import find_worst_square, write_page
 from nau_py.accuracy.ranking import Ranking
 from nau_py.accuracy.report import SettingCost, make_schema, to_csv, to_json
@@ -99,6 +100,15 @@ def test_more_samples_less_error(folder: Folder) -> None:
     assert own is not None
     assert own < rmse(settings[64])
     assert {"gl_renderer", "processor", "numpy", "embreex", "nau_py"} <= set(found.report.machine)
+
+
+def test_stages_add_up_to_the_time_of_a_frame(folder: Folder) -> None:
+    """In each run; the medians of a report are those of different runs."""
+    report = nau_py.Renderer(penumbra(folder)).render().report
+    whole = report["frames"][0]["ms"]
+    assert sum(sum_stages(report, 0.0).values()) == pytest.approx(whole, rel=1e-9)
+    captured = sum_stages(report, 2 * whole)
+    assert captured["read_back"] == pytest.approx(sum_stages(report, 0.0)["read_back"] + 2 * whole)
 
 
 def test_the_time_that_halves_the_error(monkeypatch: pytest.MonkeyPatch) -> None:
