@@ -56,6 +56,8 @@ def twins(runs: int) -> None:
 
 
 def main() -> None:
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
     root, runs = Path(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 5
     project = nau_py.load(root / "projects/optix test/optix07-ReflectionRefraction/optix.xml")
     options = nau_py.RunOptions(threads=2)
