@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from nau_py.model.attributes import BUILT_IN
 from nau_py.model.linked import Project
 from nau_py.model.passes import Pass, ProcessBuffer, ProcessTexture
 from nau_py.passes.access import buffer, texture
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
 def pass_value(project: Project, pass_: Pass, name: str) -> bool | int | float | str:
     """Return the first component of a PASS attribute."""
     return project.value(pass_, "PASS", name)[0]
+
+
+_STENCIL = tuple(a.name for a in BUILT_IN["PASS"] if a.name.startswith("STENCIL"))
 
 
 def viewport_names(pass_: Pass) -> list[str]:
@@ -101,8 +105,7 @@ def begin_drawing(
         target.clear_depth(float(pass_value(project, pass_, "DEPTH_CLEAR_VALUE")))
     if pass_value(project, pass_, "STENCIL_CLEAR"):
         target.clear_stencil(int(pass_value(project, pass_, "STENCIL_CLEAR_VALUE")))
-    names = [a.name for a in project.registry["PASS"] if a.name.startswith("STENCIL")]
-    apply_stencil({name: project.value(pass_, "PASS", name) for name in names})
+    apply_stencil({name: project.value(pass_, "PASS", name) for name in _STENCIL})
     return view
 
 

@@ -46,10 +46,9 @@ class FrameLoop:
     def _run(self, step: Step, frame: FrameContext) -> PassRecord:
         """Run a pass with its scripts; return the outcome."""
         pass_, scripts = step.pass_, self.scripts
-        record = PassRecord(step.name, pass_.pass_class)
         reason = step.reason or _mode_reason(pass_.run_mode, frame.index)
         if reason:
-            return replace(record, status="left_out", reason=reason)
+            return PassRecord(step.name, pass_.pass_class, "left_out", reason)
         start = perf_counter()
         scripts.call(pass_.preScript, frame, pass_)
         report, times = self._repeat(step, frame)
@@ -64,18 +63,19 @@ class FrameLoop:
             self._report_nonfinite(step, report, frame.session.options.check_numerics)
         add_new(self.diagnostics, frame.session.resources.diagnostics)
         status = "left_out" if reason else "run"
-        return replace(record, status=status, reason=reason, ms=ms, report=report)
+        return PassRecord(step.name, pass_.pass_class, status, reason, ms, report)
 
     def _repeat(self, step: Step, frame: FrameContext) -> tuple[PassReport, int]:
         """Run a pass as often as its test script asks; return the report, and how often it ran."""
-        test, report, times = step.pass_.testScript, PassReport(), 0
+        test, report, times = step.pass_.testScript, None, 0
         while times < MAX_REPEATS and self.scripts.test(test, frame, step.pass_):
-            report = report.then(self._execute(step, frame))
+            done = self._execute(step, frame)
+            report = done if report is None else report.then(done)
             times += 1
             again = test is not None and test.TEST_MODE == "RUN_WHILE"
             if not (again and self.scripts.running):
                 break
-        return report, times
+        return report or PassReport(), times
 
     def _execute(self, step: Step, frame: FrameContext) -> PassReport:
         resources = frame.session.resources
